@@ -1,0 +1,84 @@
+"""Continuation and stability analysis of dynamical systems with fractional-order elements.
+
+Names are imported when they are first used (PEP 562), so that ``import racs_bif`` costs nothing.
+
+Examples
+--------
+>>> import racs_bif as rb
+>>> "load_model" in dir(rb)
+True
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from racs_bif.equilibria.calibrate import calibrate
+    from racs_bif.verbs.equilibria import continue_equilibria
+    from racs_bif.verbs.orbits import continue_orbits
+    from racs_bif.results.branch import Branch
+    from racs_bif.results.diagram import Diagram
+    from racs_bif.results.files import load, save
+    from racs_bif.shelf.load import load_model
+    from racs_bif.symbolic.model import (
+        Calibration,
+        DerivedParameter,
+        FractionalElement,
+        Model,
+        Parameter,
+    )
+    from racs_bif.symbolic.strings import model_from_strings
+
+__version__ = "0.1.0.dev0"
+
+# The same names twice: above for type checkers, here for the interpreter. A test compares them.
+_HOMES: Final = {
+    "Branch": "racs_bif.results.branch",
+    "Calibration": "racs_bif.symbolic.model",
+    "DerivedParameter": "racs_bif.symbolic.model",
+    "Diagram": "racs_bif.results.diagram",
+    "FractionalElement": "racs_bif.symbolic.model",
+    "Model": "racs_bif.symbolic.model",
+    "Parameter": "racs_bif.symbolic.model",
+    "calibrate": "racs_bif.equilibria.calibrate",
+    "continue_equilibria": "racs_bif.verbs.equilibria",
+    "continue_orbits": "racs_bif.verbs.orbits",
+    "load": "racs_bif.results.files",
+    "load_model": "racs_bif.shelf.load",
+    "model_from_strings": "racs_bif.symbolic.strings",
+    "save": "racs_bif.results.files",
+}
+
+__all__ = [
+    "Branch",
+    "Calibration",
+    "DerivedParameter",
+    "Diagram",
+    "FractionalElement",
+    "Model",
+    "Parameter",
+    "calibrate",
+    "continue_equilibria",
+    "continue_orbits",
+    "load",
+    "load_model",
+    "model_from_strings",
+    "save",
+]
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name when it is first asked for."""
+    if name not in _HOMES:
+        msg = f"module 'racs_bif' has no attribute '{name}'"
+        raise AttributeError(msg, name=name, obj=None)
+    value = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """List the public names, imported or not."""
+    return sorted({*globals(), *_HOMES})

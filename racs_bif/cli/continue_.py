@@ -1,0 +1,240 @@
+"""``racs-bif continue``: the diagram in one parameter, from equilibria to the orbits they shed."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from racs_bif.cli.options import (
+    add_model_options,
+    add_output_options,
+    add_realisation_options,
+    check_span,
+    open_system,
+)
+from racs_bif.cli.parser import Parser, choice, number
+from racs_bif.errors import RacsBifError, UsageError
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+    from collections.abc import Iterator
+
+    from racs_bif.cli.terminal import Task
+    from racs_bif.fractional.system import System
+    from racs_bif.results.branch import Branch
+    from racs_bif.results.diagram import Diagram
+    from racs_bif.results.special import SpecialPoint
+
+HELP: Final = "the diagram in one parameter: equilibria, special points, orbits"
+DESCRIPTION: Final = (
+    "Follow the equilibria of a model as one parameter goes from LOW to HIGH, locate their special "
+    "points, check Hopf points on the exact fractional operator, and follow the periodic orbits "
+    "born there. Writes branches.nc, diagram.png, diagram.svg and summary.json."
+)
+FILES: Final = ("branches.nc", "diagram.png", "diagram.svg", "summary.json")
+DEFAULT_OUT: Final = "racs_bif_out"
+METHODS: Final = ("shooting", "none")
+
+
+def configure(parser: Parser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument("parameter", metavar="PARAM", help="the parameter that is varied")
+    parser.add_argument("low", metavar="LOW", type=number, help="where it begins, SI")
+    parser.add_argument("high", metavar="HIGH", type=number, help="where it ends, SI")
+    parser.add_argument(
+        "--at",
+        nargs="+",
+        action="extend",
+        default=[],
+        type=number,
+        metavar="VALUE",
+        help="values of PARAM at which a point is wanted exactly",
+    )
+    parser.add_argument(
+        "--orbits",
+        type=choice(*METHODS),
+        default=METHODS[0],
+        metavar="METHOD",
+        help="how periodic orbits are followed: shooting (default), or none to leave them out",
+    )
+    add_model_options(parser)
+    add_realisation_options(parser)
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path(DEFAULT_OUT),
+        metavar="DIR",
+        help=f"where the files go; default ./{DEFAULT_OUT}",
+    )
+    parser.add_argument(
+        "--state",
+        metavar="NAME",
+        help="what the picture shows on its vertical axis; default what the model suggests",
+    )
+    add_output_options(parser)
+
+
+@dataclass
+class Run:
+    """What was computed, and what went wrong on the way."""
+
+    branches: list[Branch] = field(default_factory=list)
+    troubles: list[str] = field(default_factory=list)
+    interrupted: bool = False
+
+
+def run(arguments: Namespace) -> int:
+    """Compute the diagram, write its files and tell what was found."""
+    from racs_bif.results.atomic import check_writable
+
+    span = (arguments.low, arguments.high)
+    check_span(*span, arguments.at)
+    check_writable(arguments.out, FILES)
+    system = open_system(arguments)
+    _check_names(arguments, system)
+
+    done = Run()
+    _compute(arguments, system, done)
+    if not done.branches:
+        raise KeyboardInterrupt
+
+    from racs_bif.results.diagram import Diagram
+
+    diagram = Diagram(*done.branches)
+    done.troubles += [f"{b.name}: {b.stopped}" for b in diagram if b.early]
+    with _uninterrupted():
+        summary = _write(diagram, arguments)
+    _tell(diagram, arguments, summary)
+    return _close(done, arguments)
+
+
+def _check_names(arguments: Namespace, system: System) -> None:
+    """Refuse what would be found out only after computing."""
+    if arguments.parameter in dict(arguments.values):
+        name = arguments.parameter
+        msg = f"--set {name} contradicts following {name} from LOW to HIGH; leave it out"
+        raise UsageError(msg)
+    known = (*system.states, *system.outputs)
+    if arguments.state is not None and arguments.state not in known:
+        from racs_bif.errors import nearest
+
+        msg = f"unknown state '{arguments.state}'; {nearest(arguments.state, known)}"
+        raise UsageError(msg)
+
+
+def _compute(arguments: Namespace, system: System, done: Run) -> None:
+    """Fill `done` with branches, until all are there or the user interrupts."""
+    from racs_bif.cli.terminal import progress
+    from racs_bif.verbs.equilibria import continue_equilibria
+
+    name, span, at = arguments.parameter, (arguments.low, arguments.high), tuple(arguments.at)
+    with _interruptible(done), progress(arguments) as task:
+        report = task("equilibria", span)
+        branch = continue_equilibria(system, name, span, at=at, progress=report)
+        done.branches.append(branch)
+        if arguments.orbits == "none":
+            return
+        for point in branch.special:
+            if point.label == "H" and not done.interrupted:
+                _follow_orbits(point, arguments, done, task)
+
+
+def _follow_orbits(point: SpecialPoint, arguments: Namespace, done: Run, task: Task) -> None:
+    from racs_bif.verbs.orbits import continue_orbits
+
+    span, at = (arguments.low, arguments.high), tuple(arguments.at)
+    try:
+        report = task(f"orbits from {point.name}", span)
+        branch = continue_orbits(point, span, method=arguments.orbits, at=at, progress=report)
+        done.branches.append(branch)
+    except RacsBifError as error:
+        done.troubles.append(f"no orbits from {point.name}: {error}")
+
+
+@contextmanager
+def _interruptible(done: Run) -> Iterator[None]:
+    """Note Ctrl-C, end the block at it, and keep what is there.
+
+    A branch that is interrupted ends and keeps its points; the note says that no other is begun.
+    """
+
+    def note(_number: int, _frame: object) -> None:
+        done.interrupted = True
+        raise KeyboardInterrupt
+
+    main = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGINT, note) if main else None
+    try:
+        yield
+    except KeyboardInterrupt:
+        done.interrupted = True
+    finally:
+        if main:
+            signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Let nobody's Ctrl-C keep from disk what has been computed."""
+    main = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN) if main else None
+    try:
+        yield
+    finally:
+        if main:
+            signal.signal(signal.SIGINT, before)
+
+
+def _write(diagram: Diagram, arguments: Namespace) -> str:
+    """Write all files, whole or not at all, and return the summary's text."""
+    from racs_bif import __version__
+    from racs_bif.plots.diagram import picture
+    from racs_bif.plots.style import save_picture
+    from racs_bif.results.atomic import staged
+    from racs_bif.results.files import save
+    from racs_bif.results.summary import summarise, to_text, write_summary
+
+    summary = summarise(diagram, arguments.command, __version__)
+    figure = picture(diagram, arguments.state)
+    with staged(arguments.out) as folder:
+        save(diagram, folder / FILES[0])
+        save_picture(figure, folder / FILES[1])
+        save_picture(figure, folder / FILES[2])
+        write_summary(summary, folder / FILES[3])
+    return to_text(summary)
+
+
+def _tell(diagram: Diagram, arguments: Namespace, summary: str) -> None:
+    from racs_bif.cli.tables import branch_table, heading, operating_table, special_table
+    from racs_bif.cli.terminal import console
+
+    if arguments.json:
+        print(summary, end="")
+    screen = console(arguments)
+    system = diagram.branches[0].system
+    screen.print(heading(system))
+    special = special_table(diagram)
+    if not special.row_count:
+        screen.print("\nNo special point in this span.")
+    for table in (special, operating_table(diagram), branch_table(diagram)):
+        if table.row_count:
+            screen.print(table)
+    for note in system.notes:
+        screen.print(f"\nNote: {note}")
+    screen.print(f"\nWrote {', '.join(FILES)} to {arguments.out.resolve()}", soft_wrap=True)
+
+
+def _close(done: Run, arguments: Namespace) -> int:
+    """Say what went wrong and return the exit status."""
+    from racs_bif.cli.terminal import warn
+
+    if done.interrupted:
+        done.troubles.insert(0, "interrupted by the user")
+    if not done.troubles:
+        return 0
+    warn(f"ended early, saved what there is in {arguments.out}: {' | '.join(done.troubles)}")
+    return 1

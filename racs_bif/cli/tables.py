@@ -1,0 +1,140 @@
+"""Tables of a diagram for the terminal; they fit 80 columns."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+from rich.table import Table
+
+from racs_bif.results.special import OPERATING
+from racs_bif.results.stability import describe_stability
+
+if TYPE_CHECKING:
+    from racs_bif.results.branch import Branch
+    from racs_bif.results.diagram import Diagram
+    from racs_bif.results.provenance import SystemInfo
+    from racs_bif.results.special import SpecialPoint
+
+_NONE: Final = "-"
+
+
+def heading(system: SystemInfo) -> str:
+    """Return the lines above the tables: which model, and how it was realised."""
+    variant = f", variant {system.variant}" if system.variant else ""
+    title = f": {system.title}" if system.title else ""
+    lines = [f"{system.model}{variant}{title}"]
+    if system.realisation is not None:
+        how = system.realisation
+        lines.append(
+            f"realisation {how.name}, {how.states} states, {how.band[0]:g} to {how.band[1]:g} "
+            f"rad/s, largest error there {100 * how.error:.2g} %"
+        )
+    return "\n".join(lines)
+
+
+def special_table(diagram: Diagram) -> Table:
+    """Return the special points: where, how far from the exact one, frequency, criticality."""
+    system = diagram.branches[0].system
+    name = diagram.branches[0].parameters[0]
+    table = _table("Special points")
+    table.add_column("point", no_wrap=True)
+    table.add_column("on", no_wrap=True)
+    for title in (_with_unit(name, system), "exact", "shift", "rad/s", "Hz", "l1"):
+        table.add_column(title, justify="right", no_wrap=True)
+    table.add_column("")
+    for point in diagram.special_points:
+        if point.label not in OPERATING:
+            table.add_row(*_special_row(point, name))
+    return table
+
+
+def operating_table(diagram: Diagram) -> Table:
+    """Return the points the user asked for: state or range, period, stability."""
+    system = diagram.branches[0].system
+    name, shown = diagram.branches[0].parameters[0], system.shown or system.states[0]
+    table = _table("Points asked for")
+    table.add_column("point", no_wrap=True)
+    table.add_column("on", no_wrap=True)
+    for title in (_with_unit(name, system), _with_unit(shown, system), "period [s]"):
+        table.add_column(title, justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    for branch in diagram:
+        for point in branch.special:
+            if point.label == "UZ":
+                table.add_row(*_operating_row(point, branch, name, shown))
+    return table
+
+
+def branch_table(diagram: Diagram) -> Table:
+    """Return the branches: how many points, stability, and why they ended."""
+    table = _table("Branches")
+    table.add_column("branch", no_wrap=True)
+    table.add_column("points", justify="right", no_wrap=True)
+    table.add_column(f"stability along {diagram.branches[0].parameters[0]}, and why it ended")
+    for branch in diagram:
+        told = describe_stability(branch)
+        table.add_row(branch.name, str(len(branch)), f"{told}\n{branch.stopped}")
+    return table
+
+
+def _table(title: str) -> Table:
+    return Table(
+        title=f"\n{title}",
+        title_justify="left",
+        title_style="bold",
+        box=None,
+        pad_edge=False,
+        collapse_padding=True,
+    )
+
+
+def _special_row(point: SpecialPoint, name: str) -> list[str]:
+    omega = point.data.get("omega")
+    exact = point.exact
+    return [
+        point.name,
+        point.branch,
+        _fixed(point.parameters.get(name)),
+        _fixed(exact.parameters.get(name)) if exact else _NONE,
+        _short(exact.shift.get(name)) if exact else _NONE,
+        _fixed(omega),
+        _fixed(omega / (2 * math.pi), 5) if isinstance(omega, float) else _NONE,
+        _short(point.data.get("l1")),
+        str(point.data.get("criticality", point.title)),
+    ]
+
+
+def _operating_row(point: SpecialPoint, branch: Branch, name: str, shown: str) -> list[str]:
+    k = point.index
+    if f"max {shown}" in branch.measures:
+        low, high = branch.column(f"min {shown}")[k], branch.column(f"max {shown}")[k]
+        value = f"{_fixed(low)} to {_fixed(high)}"
+    elif shown in branch.state_names:
+        value = _fixed(float(branch.column(shown)[k]))
+    else:
+        value = _NONE
+    unstable = int(branch.unstable[k])
+    told = {-1: _NONE, 0: "stable"}.get(unstable, f"unstable ({unstable})")
+    period = branch.measures["period"][k] if "period" in branch.measures else None
+    return [
+        point.name,
+        branch.name,
+        _fixed(point.parameters.get(name)),
+        value,
+        _fixed(period),
+        told,
+    ]
+
+
+def _with_unit(name: str, system: SystemInfo) -> str:
+    unit = system.unit(name)
+    return f"{name} [{unit}]" if unit else name
+
+
+def _fixed(value: object, digits: int = 7) -> str:
+    return f"{value:.{digits}g}" if isinstance(value, float) and math.isfinite(value) else _NONE
+
+
+def _short(value: object) -> str:
+    return f"{value:.1e}" if isinstance(value, float) and math.isfinite(value) else _NONE

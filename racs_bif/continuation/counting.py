@@ -1,0 +1,65 @@
+"""Whether the events found explain which eigenvalues changed side."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from racs_bif.numerics.eigen import match
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from racs_bif.continuation.points import Point
+    from racs_bif.continuation.problem import Problem
+
+_CHEAP = 200
+
+
+def unexplained(problem: Problem, a: Point, b: Point, crossings: Iterable[int]) -> str:
+    """Say what the events between two points leave unexplained.
+
+    The number of unstable eigenvalues must change by a sum of the events' crossings, each up or
+    down. Crossings in opposite directions cancel in that number: they are seen by following each
+    eigenvalue to the nearest one at the other point.
+
+    Parameters
+    ----------
+    problem : Problem
+        Knows the sides.
+    a, b : Point
+        Two points, one after another.
+    crossings : iterable of int
+        How many eigenvalues change side at each event between them.
+
+    Returns
+    -------
+    str
+        Empty if all is explained.
+    """
+    if len(a.spectrum) == 0 or len(b.spectrum) == 0:
+        return ""
+    counts = [count for count in crossings if count]
+    change = b.unstable - a.unstable
+    sums = {0}
+    for count in counts:
+        sums = {total + sign * count for total in sums for sign in (1, -1)}
+    if change not in sums:
+        return f"the number of unstable eigenvalues goes from {a.unstable} to {b.unstable}"
+    crossed = _crossed(problem, a, b)
+    if crossed > sum(counts):
+        return f"{crossed} eigenvalues cross, some each way"
+    return ""
+
+
+def _crossed(problem: Problem, a: Point, b: Point) -> int:
+    """Return how many eigenvalues changed side, as far as that is cheap to tell."""
+    size = len(a.spectrum)
+    one_way = min(a.unstable, b.unstable) == 0
+    if one_way or len(b.spectrum) != size or size > _CHEAP:
+        return abs(b.unstable - a.unstable)
+    if not (np.isfinite(a.spectrum).all() and np.isfinite(b.spectrum).all()):
+        return abs(b.unstable - a.unstable)
+    places = match(a.spectrum, b.spectrum)
+    return int(np.count_nonzero(problem.sides(a.spectrum) != problem.sides(b.spectrum)[places]))

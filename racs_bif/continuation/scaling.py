@@ -1,0 +1,87 @@
+"""The scaled norm in which lengths along a branch are measured."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Array
+
+_GROWTH = 0.5
+_SLOPE = 1e-3
+
+
+class Scaling:
+    """A weighted Euclidean norm, the same for every problem whatever its units.
+
+    The parameter counts in units of the span. The unknowns count by the root of their mean square,
+    each in units of the largest magnitude it had so far, so that the norm does not grow with their
+    number.
+
+    Parameters
+    ----------
+    width : float
+        Width of the span.
+    magnitudes : array (n,)
+        Typical magnitudes of the unknowns.
+
+    Attributes
+    ----------
+    weights : array (n + 1,)
+        The norm of v is ``sqrt(sum(weights * v**2))``.
+    """
+
+    def __init__(self, width: float, magnitudes: Array) -> None:
+        self._width = width
+        self.restart(magnitudes)
+
+    def restart(self, magnitudes: Array) -> None:
+        """Begin anew, such as after a change of the dimension."""
+        self._magnitudes = np.array(magnitudes, dtype=float)
+        self._update()
+
+    def _update(self) -> None:
+        inverse = np.empty(len(self._magnitudes) + 1)
+        inverse[:-1] = 1.0 / self._magnitudes
+        inverse[-1] = 1.0 / self._width
+        self._inverse = inverse
+        self.weights = inverse * inverse
+        self.weights[:-1] /= len(self._magnitudes)
+
+    def grow(self, magnitudes: Array) -> bool:
+        """Take in magnitudes (n,) newly seen; return whether that changed the norm."""
+        if not (magnitudes > self._magnitudes).any():
+            return False
+        np.maximum(self._magnitudes, magnitudes, out=self._magnitudes)
+        self._update()
+        return True
+
+    def foresee(self, tangent: Array) -> bool:
+        """Take in how far a straight branch would carry the unknowns over the span.
+
+        Only a small part of it counts: it is for unknowns that are zero at the start.
+        """
+        if tangent[-1] == 0.0:
+            return False
+        return self.grow(_SLOPE * self._width * np.abs(tangent[:-1] / tangent[-1]))
+
+    def norm(self, v: Array) -> float:
+        """Return the scaled norm of v (n+1,)."""
+        return math.sqrt(self.weights.dot(v * v))
+
+    def longest(self, z: Array, tangent: Array, maximum: float) -> float:
+        """Return the longest step from z that moves nothing by more than ``maximum`` of its scale.
+
+        An unknown that is growing beyond all it was may grow by half of that: what its range
+        will be is not known yet.
+        """
+        motion = np.abs(tangent * self._inverse)
+        step = maximum / float(motion.max())
+        outward = np.abs(z[:-1] + step * tangent[:-1]) > self._magnitudes
+        if outward.any():
+            motion[:-1][outward] *= maximum / max(_GROWTH, maximum)
+            step = maximum / float(motion.max())
+        return step

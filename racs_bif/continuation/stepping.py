@@ -1,0 +1,346 @@
+"""Pseudo-arclength steps along a branch (H. B. Keller, 1977), with step control."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from racs_bif.continuation.building import FAILURES, Builder
+from racs_bif.continuation.checking import CONTRACTION, judge
+from racs_bif.continuation.segment import Segment
+from racs_bif.continuation.settings import StepSettings
+from racs_bif.continuation.start import along, checked, first
+from racs_bif.continuation.stopped import Stopped
+from racs_bif.errors import ConvergenceError
+from racs_bif.numerics.newton import Corrected, NotFiniteError, newton
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from racs_bif.continuation.points import Array, Point
+    from racs_bif.continuation.problem import Problem
+    from racs_bif.continuation.scaling import Scaling
+
+_FIRST_CLOSABLE = 4
+_SAME = 1e-6
+_SAME_DIRECTION = 0.99
+_STRETCH = 1.1
+
+
+def _cause(error: Exception) -> Stopped:
+    """Say whether Newton's method failed or the equations did."""
+    newton_failed = isinstance(error, ConvergenceError | np.linalg.LinAlgError)
+    if newton_failed and not isinstance(error, NotFiniteError):
+        return Stopped.STEP
+    return Stopped.FAILED
+
+
+class Stepper:
+    """Walks along a branch, one accepted point after another.
+
+    Parameters
+    ----------
+    builder : Builder
+        Makes the points.
+    scaling : Scaling
+        The norm; grown on the way.
+    start : Point
+        A solution with its tangent.
+    span : tuple of float
+        Where the parameter may go.
+    settings : StepSettings
+        Of the step control.
+    sense : int
+        +1 to walk along the start's tangent, -1 against it: arclengths then fall, and tangents
+        still point along the branch, away from the walk.
+
+    Attributes
+    ----------
+    point : Point
+        Where the walk is, as the next step begins: on the new mesh where the mesh was adapted.
+    step : float
+        The next step.
+    stopped : Stopped or None
+        Why the walk ended; None while it can go on.
+    message : str
+        More about the end.
+    """
+
+    def __init__(
+        self,
+        builder: Builder,
+        scaling: Scaling,
+        start: Point,
+        span: tuple[float, float],
+        settings: StepSettings,
+        sense: int = 1,
+    ) -> None:
+        self._builder, self._problem = builder, builder.problem
+        self.scaling = scaling
+        self._start = self.point = start
+        self._tangent = start.tangent * sense
+        self._low, self._high = span
+        self._settings = settings
+        self._sense = sense
+        self.step = settings.initial
+        self.stopped: Stopped | None = None
+        self.message = ""
+        self._accepted = 0
+        self._refreshed = False
+
+    def advance(self) -> Point | None:
+        """Take one step; return the new point, or None if the walk has ended."""
+        if self.stopped is None and self._exit() <= 0.0:
+            self.stopped = Stopped.SPAN
+        if self.stopped is None and self._accepted >= self._settings.points:
+            self.stopped = Stopped.POINTS
+        cause, reason = Stopped.STEP, ""
+        with np.errstate(all="ignore"):
+            while self.stopped is None:
+                try:
+                    point = self._attempt()
+                except FAILURES as error:
+                    point, cause = None, _cause(error)
+                    reason = str(error) or type(error).__name__
+                    self.step *= 0.5
+                else:
+                    if point is not None:
+                        return point
+                    cause, reason = Stopped.TURN, "the tangent turned too much"
+                if self.step < self._settings.minimum:
+                    self._retry(cause, reason)
+        return None
+
+    def _retry(self, cause: Stopped, reason: str) -> None:
+        """Try once more from a fresh tangent, then give up."""
+        if not self._refreshed:
+            self._refreshed = True
+            self.step = self._settings.initial
+            try:
+                fresh = self._correct(self.point.z, self.scaling.weights * self._tangent, 0.5)
+            except FAILURES:
+                pass
+            else:
+                tangent = fresh.tangent / self.scaling.norm(fresh.tangent)
+                if np.isfinite(tangent).all():
+                    self._tangent = tangent
+                    return
+        self.stopped = cause
+        self.message = (
+            f"{self._problem.name} ended at {self._problem.parameter} = "
+            f"{self.point.parameter:.10g}: {reason}"
+        )
+
+    def _exit(self) -> float:
+        """Return the step at which the tangent leaves the span."""
+        speed, at = float(self._tangent[-1]), float(self.point.z[-1])
+        if speed == 0.0:
+            return math.inf
+        return ((self._high if speed > 0.0 else self._low) - at) / speed
+
+    def _correct(self, z: Array, row: Array, contraction: float) -> Corrected:
+        return newton(
+            self._problem,
+            z,
+            row,
+            self.scaling.weights,
+            tolerance=self._settings.tolerance,
+            iterations=self._settings.iterations,
+            contraction=contraction,
+        )
+
+    def _attempt(self) -> Point | None:
+        """Try the present step; None if it does not look right."""
+        z, tangent = self.point.z, self._tangent
+        longest = self.scaling.longest(z, tangent, self._settings.maximum)
+        step = self.step = min(self.step, longest)
+        leaving = self._exit()
+        if leaving <= _STRETCH * step:
+            # The last step is solved with the parameter held at the end of the span.
+            return self._land(z + leaving * tangent)
+        corrected = self._correct(z + step * tangent, self.scaling.weights * tangent, CONTRACTION)
+        if not self._low <= corrected.z[-1] <= self._high:
+            return self._land(self._overshot(corrected))
+        return self._accept(corrected, held=None)
+
+    def _overshot(self, corrected: Corrected) -> Array:
+        """Return a prediction of where the branch leaves the span, between here and beyond it."""
+        a, b = self.point, corrected
+        end = self._high if b.z[-1] > self._high else self._low
+        share = (end - a.z[-1]) / (b.z[-1] - a.z[-1])
+        beyond = replace(a, z=b.z, tangent=b.tangent * self._sense)
+        segment = Segment(self._builder, self.scaling, self._settings, a, beyond)
+        for _ in range(4):
+            z, direction = segment.interpolate(share)
+            along_chord = direction[-1] * segment.length * self._sense
+            if along_chord == 0.0:
+                break
+            share = min(max(share + (end - z[-1]) / along_chord, 0.0), 1.0)
+        return segment.interpolate(share)[0]
+
+    def _land(self, prediction: Array) -> Point | None:
+        """Solve at the end of the span nearest to a prediction; shorten the step if that fails."""
+        nearer_high = prediction[-1] - self._low > self._high - prediction[-1]
+        end = self._high if nearer_high else self._low
+        prediction = prediction.copy()
+        prediction[-1] = end
+        row = np.zeros(len(prediction))
+        row[-1] = 1.0 / (self._high - self._low)
+        self.step = min(self.step, self.scaling.norm(prediction - self.point.z))
+        corrected = self._correct(prediction, row, CONTRACTION)
+        corrected.z[-1] = end
+        along_branch = self.scaling.weights.dot(self._tangent * corrected.tangent)
+        if along_branch < 0.0:
+            corrected.tangent = -corrected.tangent
+        return self._accept(corrected, held=end)
+
+    def _accept(self, corrected: Corrected, *, held: float | None) -> Point | None:
+        """Judge a corrected step; make it the present point if it passes."""
+        before, scaling = self.point, self.scaling
+        tangent = corrected.tangent / scaling.norm(corrected.tangent)
+        verdict = judge(
+            scaling,
+            (before.z, corrected.z),
+            (self._tangent, tangent),
+            (corrected.iterations, corrected.contraction),
+            self._settings.angle,
+        )
+        if not verdict.accepted:
+            self.step *= verdict.factor
+            return None
+        length = scaling.norm(corrected.z - before.z)
+        point = self._builder.point(
+            corrected.z,
+            tangent * self._sense,
+            before.arclength + self._sense * length,
+            corrected.iterations,
+        )
+        closed = self._closed(point, length)
+        self.step *= verdict.factor
+        self._refreshed = False
+        self._accepted += 1
+        if closed is not None:
+            self.stopped = Stopped.CLOSED
+            self.point = closed
+            return closed
+        self._go_on(point, tangent)
+        if held is not None and self.stopped is None:
+            self.stopped = Stopped.SPAN
+        return point
+
+    def _go_on(self, point: Point, tangent: Array) -> None:
+        """Make ready for the next step."""
+        scaling, problem = self.scaling, self._problem
+        self.stopped = problem.ends(point)
+        adapted = problem.adapt(point.z, tangent) if self.stopped is None else None
+        if adapted is not None:
+            z, tangent = adapted
+            if len(z) != len(point.z):
+                scaling.restart(problem.scales(z))
+            scaling.grow(problem.scales(z))
+            tangent = tangent / scaling.norm(tangent)
+            point = replace(point, z=z, tangent=tangent * self._sense)
+        elif scaling.grow(problem.scales(point.z)):
+            tangent = tangent / scaling.norm(tangent)
+        self.point, self._tangent = point, tangent
+
+    def _closed(self, point: Point, length: float) -> Point | None:
+        """Return the start, with its new arclength, if this step passed it again."""
+        before, start, scaling = self.point, self._start, self.scaling
+        if self._accepted < _FIRST_CLOSABLE or len(start.z) != len(point.z):
+            return None
+        if scaling.norm(start.z - point.z) > _STRETCH * length:
+            return None
+        chord = point.z - before.z
+        share = float((scaling.weights * chord).dot(start.z - before.z)) / length**2
+        if not 0.0 < share <= 1.0 + 1e-9:
+            return None
+        segment = Segment(self._builder, scaling, self._settings, before, point)
+        z, tangent = segment.correct(share)[:2] if share < 1.0 else (point.z, point.tangent)
+        direction = scaling.weights.dot(tangent * start.tangent)
+        direction /= scaling.norm(tangent) * scaling.norm(start.tangent)
+        if scaling.norm(z - start.z) > _SAME or direction < _SAME_DIRECTION:
+            return None
+        return replace(start, arclength=segment.arclength(share))
+
+
+def begin(
+    problem: Problem,
+    z: Array,
+    span: tuple[float, float],
+    settings: StepSettings,
+    tangent: Array | None,
+) -> tuple[Array, Array, int, Scaling]:
+    """Return the corrected start, its unit tangent, the iterations it took and the norm.
+
+    Raises
+    ------
+    UsageError
+        If the span or the start cannot be used.
+    ConvergenceError
+        If there is no solution at the start.
+    """
+    z = checked(problem, z, span)
+    width = span[1] - span[0]
+    with np.errstate(all="ignore"):
+        if tangent is None:
+            return first(problem, z, width, settings)
+        return along(problem, z, np.array(tangent, dtype=float), width, settings)
+
+
+def steps(
+    problem: Problem,
+    z: Array,
+    span: tuple[float, float],
+    settings: StepSettings | None = None,
+    *,
+    direction: int = 1,
+    tangent: Array | None = None,
+) -> Generator[Point, None, Stopped]:
+    """Yield the points of a branch one by one, without looking for events.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is solved.
+    z : array (n + 1,)
+        A guess of the first point; solved at its parameter.
+    span : tuple of float
+        Lowest and highest value of the parameter.
+    settings : StepSettings, optional
+        Of the step control.
+    direction : int
+        +1 to set off with the parameter increasing, or along `tangent` if given; -1 the other way.
+    tangent : array (n + 1,), optional
+        Direction in which to set off. The start is then corrected across it.
+
+    Yields
+    ------
+    Point
+        The start, then every accepted point.
+
+    Returns
+    -------
+    Stopped
+        Why it ended, as the generator's value.
+
+    Raises
+    ------
+    UsageError
+        If the span or the start cannot be used.
+    ConvergenceError
+        If there is no solution at the start.
+    """
+    settings = settings or StepSettings()
+    corrected, unit, iterations, scaling = begin(problem, z, span, settings, tangent)
+    builder = Builder(problem, (), 0)
+    start = builder.point(corrected, unit * direction, 0.0, iterations)
+    stepper = Stepper(builder, scaling, start, span, settings)
+    yield start
+    while (point := stepper.advance()) is not None:
+        yield point
+    assert stepper.stopped is not None
+    return stepper.stopped

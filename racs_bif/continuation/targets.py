@@ -1,0 +1,122 @@
+"""Points wanted exactly: values of the parameter or of a measure (AUTO's UZ)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from racs_bif.continuation.building import FAILURES
+from racs_bif.continuation.problem import Detector, Problem
+from racs_bif.continuation.scaling import Scaling
+from racs_bif.errors import UsageError
+from racs_bif.numerics.newton import newton
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Array, Point, SpecialPoint
+    from racs_bif.continuation.settings import StepSettings
+
+Targets = Sequence[float] | Mapping[str, Sequence[float]]
+"""Values of the parameter, or values by the name of the parameter or of a measure."""
+
+
+class Target(Detector):
+    """A wanted value of something.
+
+    Parameters
+    ----------
+    name : str
+        The parameter or the measure.
+    target : float
+        Its wanted value.
+    """
+
+    label = "UZ"
+
+    def __init__(self, name: str, target: float) -> None:
+        self.name, self.target = name, target
+
+    def value(self, problem: Problem, point: Point) -> float:
+        """Return how far the measure is above its target."""
+        del problem
+        return point.measures[self.name] - self.target
+
+    def data(self, problem: Problem, point: Point) -> dict[str, Any]:
+        """Return what was wanted."""
+        del problem, point
+        return {"name": self.name, "target": self.target}
+
+
+class ParameterTarget(Target):
+    """A wanted value of the continuation parameter, met exactly."""
+
+    def __init__(self, name: str, target: float, settings: StepSettings, width: float) -> None:
+        super().__init__(name, target)
+        self._settings, self._width = settings, width
+
+    def value(self, problem: Problem, point: Point) -> float:
+        """Return how far the parameter is above its target."""
+        del problem
+        return float(point.z[-1]) - self.target
+
+    def refine(self, problem: Problem, special: SpecialPoint) -> Array | None:
+        """Solve with the parameter held at its target."""
+        z = special.z.copy()
+        z[-1] = self.target
+        row = np.zeros(len(z))
+        row[-1] = 1.0 / self._width
+        try:
+            corrected = newton(
+                problem,
+                z,
+                row,
+                Scaling(self._width, problem.scales(z)).weights,
+                tolerance=self._settings.tolerance,
+                iterations=self._settings.iterations,
+            )
+        except FAILURES:
+            return None
+        corrected.z[-1] = self.target
+        return corrected.z
+
+
+def detectors_of(
+    targets: Targets,
+    problem: Problem,
+    span: tuple[float, float],
+    settings: StepSettings,
+    measures: Mapping[str, float],
+) -> list[Target]:
+    """Return a detector of each target.
+
+    Raises
+    ------
+    UsageError
+        If a value is not finite or outside the span, or nothing has the name.
+    """
+    if not isinstance(targets, Mapping):
+        targets = {problem.parameter: targets}
+    found: list[Target] = []
+    low, high = span
+    for name, values in targets.items():
+        for value in map(float, dict.fromkeys(values)):
+            if not math.isfinite(value):
+                msg = f"the value {value!r} wanted of '{name}' is not finite"
+                raise UsageError(msg)
+            if name == problem.parameter:
+                if not low <= value <= high:
+                    msg = (
+                        f"the point wanted at {name} = {value:.10g} is outside the span "
+                        f"{low:.10g} to {high:.10g}"
+                    )
+                    raise UsageError(msg)
+                found.append(ParameterTarget(name, value, settings, high - low))
+            elif name in measures:
+                found.append(Target(name, value))
+            else:
+                known = ", ".join([problem.parameter, *measures])
+                msg = f"no '{name}' to want values of; there are: {known}"
+                raise UsageError(msg)
+    return found

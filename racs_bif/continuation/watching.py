@@ -1,0 +1,322 @@
+"""Looks for events along a branch as it grows, and puts them in their places."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from racs_bif.continuation.building import FAILURES, Builder
+from racs_bif.continuation.counting import unexplained
+from racs_bif.continuation.locating import Event, Locator
+from racs_bif.continuation.points import Point, SpecialPoint
+from racs_bif.continuation.targets import ParameterTarget
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.scaling import Scaling
+    from racs_bif.continuation.segment import Segment
+    from racs_bif.continuation.settings import StepSettings
+
+_ZERO = 1e-13
+_FADING = 0.1
+_FLOOR = 1e-6
+_MOST_UNEXPLAINED = 20
+_REACH = 1e-3
+_APART = 1e-9
+
+Node = tuple[Point, SpecialPoint | None]
+"""A point of the branch and, where it is an event, what is known about it."""
+
+
+@dataclass(slots=True)
+class _Pending:
+    """A segment whose next point is not known yet."""
+
+    a: Point
+    b: Point
+    before: list[float]
+    after: list[float]
+    earlier: tuple[float, list[float]] | None = field(default=None)
+
+
+class Watch:
+    """Collects the points of one walk and the events between them.
+
+    A sign counts only where its test function is not zero but for rounding; a point where it is
+    carries the sign before it, so that an event there is found once, with the next sign that
+    differs, and a function that merely touches zero makes none. One step behind the walk, because
+    the next value tells what is rounding and where the function may have dipped through zero
+    between two points.
+
+    Parameters
+    ----------
+    builder : Builder
+        Knows the detectors.
+    scaling : Scaling
+        The norm.
+    settings : StepSettings
+        How closely to locate.
+    notes : list of str
+        Where it enters what it could not explain.
+    start : Point
+        The first point.
+
+    Attributes
+    ----------
+    nodes : list of Node
+        The branch so far.
+    first : list of int
+        The first certain sign of each test function, 0 while there is none.
+    signs : list of int
+        The last one.
+    doubtful : list of bool
+        Which are zero, but for rounding, at the start.
+    divided : bool
+        Whether the last segment had to be divided to explain its spectrum.
+    """
+
+    def __init__(
+        self,
+        builder: Builder,
+        scaling: Scaling,
+        settings: StepSettings,
+        notes: list[str],
+        start: Point,
+    ) -> None:
+        self._builder, self._problem = builder, builder.problem
+        self._locator = Locator(builder, scaling, settings, notes)
+        self._notes = notes
+        self._checked = any(detector.crossings for detector in builder.detectors)
+        self._mismatches = 0
+        self._values = builder.values(start)
+        self._places = range(len(self._values))
+        self._sizes = [abs(value) for value in self._values]
+        self._pending: _Pending | None = None
+        self._arrived: list[Point] = []
+        self.nodes: list[Node] = [(start, None)]
+        self.first = [0] * len(self._values)
+        self.signs = [0] * len(self._values)
+        self.doubtful = [True] * len(self._values)
+        self.divided = False
+
+    def feed(self, a: Point, b: Point) -> None:
+        """Take in the step from a, the last point fed, to b."""
+        self.divided = False
+        self._arrived.append(b)
+        values = self._builder.values(b)
+        last = self._pending
+        if last is None:
+            for place in self._places:
+                self.signs[place] = self._sign(place, self._values[place], values[place])
+            self.first = list(self.signs)
+            self.doubtful = [sign == 0 for sign in self.signs]
+            earlier = None
+        else:
+            self._settle(last, (b.arclength, values))
+            earlier = (last.a.arclength, last.before)
+        self._pending = _Pending(a, b, self._values, values, earlier)
+        self._values = values
+
+    def finish(self, *, closed: bool) -> None:
+        """Settle the last segment; a test function that is exactly zero at an end has its event."""
+        if self._pending is None:
+            return
+        last = self._pending
+        self._settle(last, None)
+        self._pending = None
+        if not closed:
+            for place in self._places:
+                if last.after[place] == 0.0 and self.signs[place]:
+                    self.mark(place, len(self.nodes) - 1)
+
+    def abandon(self) -> None:
+        """Keep the points not yet looked at, without their events."""
+        self.nodes.extend((point, None) for point in self._arrived)
+        self._arrived, self._pending = [], None
+
+    def mark(self, place: int, index: int) -> None:
+        """Make a special point of a node at which a test function is zero."""
+        point, special = self.nodes[index]
+        found = self._locator.describe(place, point, 0.0, _REACH)
+        if found is None:
+            return
+        if special is None:
+            self.nodes[index] = (found.point, found.special)
+        else:
+            self.nodes.insert(index + 1, (found.point, found.special))
+
+    def _sign(self, place: int, value: float, following: float) -> int:
+        """Return the sign of a value, 0 where it is zero beside the values around it."""
+        size = self._sizes[place]
+        for other in (value, following):
+            if abs(other) > size or math.isnan(size):
+                size = abs(other)
+        if math.isnan(value) or abs(value) <= _ZERO * size:
+            return 0
+        return 1 if value > 0.0 else -1
+
+    def _settle(self, last: _Pending, following: tuple[float, list[float]] | None) -> None:
+        """Look for events in a segment, now that the value after it is known, and append it."""
+        before, after = list(last.before), list(last.after)
+        for place in self._places:
+            self._cross(place, before, after, following[1][place] if following else math.nan)
+        nodes = self._search(last, before, after, following)
+        self.nodes.extend(nodes)
+        self.nodes.append((last.b, None))
+        self._arrived.remove(last.b)
+
+    def _cross(self, place: int, before: list[float], after: list[float], following: float) -> None:
+        """Bring one sign up to the end of a segment; blank values whose change is no event."""
+        value = after[place]
+        old, new = self.signs[place], self._sign(place, value, following)
+        if not math.isnan(value):
+            size = self._sizes[place]
+            self._sizes[place] = max(abs(value), 0.0 if math.isnan(size) else _FADING * size)
+            new = new or old
+        self.signs[place] = new
+        self.first[place] = self.first[place] or new
+        if old * new < 0:
+            if before[place] * old > 0.0:
+                return
+            self.mark(place, len(self.nodes) - 1)
+        elif before[place] * value > 0.0 and old:
+            return
+        before[place] = after[place] = math.nan
+
+    def _search(
+        self,
+        last: _Pending,
+        before: list[float],
+        after: list[float],
+        following: tuple[float, list[float]] | None,
+    ) -> list[Node]:
+        """Return the events within a segment, split first where a function dips through zero."""
+        a, b = last.a, last.b
+        segment = self._locator.segment(a, b)
+        nodes: list[Node] = []
+        for at in self._splits(segment, last, (before, after), following):
+            middle = segment.known(at)
+            values = self._between(middle, before)
+            nodes += self._resolve(a, middle, before, values)
+            nodes.append((middle, None))
+            a, before = middle, values
+        rest = segment if a is last.a else self._locator.segment(a, b)
+        return nodes + self._resolve(a, b, before, after, rest)
+
+    def _splits(
+        self,
+        segment: Segment,
+        last: _Pending,
+        values: tuple[list[float], list[float]],
+        following: tuple[float, list[float]] | None,
+    ) -> list[float]:
+        """Return where a segment must be split for each sign change to be seen."""
+        before, after = values
+        length = last.b.arclength - last.a.arclength
+        found = []
+        for place in self._places:
+            if not before[place] * after[place] > 0.0:
+                continue
+            sign = math.copysign(1.0, before[place])
+            ends = ((0.0, sign * before[place]), (1.0, sign * after[place]))
+            triples = []
+            for other, first in ((last.earlier, True), (following, False)):
+                if other is None or length == 0.0 or not sign * other[1][place] > 0.0:
+                    continue
+                outer = ((other[0] - last.a.arclength) / length, sign * other[1][place])
+                x, y, z = (outer, *ends) if first else (*ends, outer)
+                triples.append(((x[0], y[0], z[0]), (x[1], y[1], z[1])))
+            at = self._locator.dip(segment, place, triples)
+            if at is not None:
+                found.append(at)
+        found += self._turned(segment, before, after)
+        return _apart(found)
+
+    def _turned(self, segment: Segment, before: list[float], after: list[float]) -> list[float]:
+        """Return where the parameter turns back beyond a value wanted."""
+        wanted = [
+            place
+            for place in self._places
+            if isinstance(self._builder.detectors[place], ParameterTarget)
+            and before[place] * after[place] > 0.0
+        ]
+        at = self._locator.turn(segment) if wanted else None
+        if at is None:
+            return []
+        try:
+            at, point = segment.point(at)
+        except FAILURES:
+            return []
+        passed = any(self._builder.value(place, point) * before[place] < 0.0 for place in wanted)
+        return [at] if passed else []
+
+    def _between(self, point: Point, before: list[float]) -> list[float]:
+        """Return the values at a point put between two others, none of them exactly zero."""
+        tiny = math.ulp(0.0)
+        values = self._builder.values(point)
+        return [
+            value if value != 0.0 else math.copysign(tiny, old)
+            for value, old in zip(values, before, strict=True)
+        ]
+
+    def _resolve(
+        self,
+        a: Point,
+        b: Point,
+        before: list[float],
+        after: list[float],
+        segment: Segment | None = None,
+    ) -> list[Node]:
+        """Return the events between two points, dividing until they explain the spectrum."""
+        segment = segment or self._locator.segment(a, b)
+        events: list[Event] = []
+        for place in self._places:
+            if before[place] * after[place] < 0.0:
+                event = self._locator.locate(segment, place, before[place], after[place])
+                if event is not None:
+                    events.append(event)
+        events.sort(key=lambda event: event.at)
+        nodes: list[Node] = [(event.point, event.special) for event in events]
+        at_start = a.arclength == self.nodes[0][0].arclength
+        if not self._checked or self._mismatches >= _MOST_UNEXPLAINED:
+            return nodes
+        if at_start and self._critical_start():
+            return nodes
+        reason = unexplained(self._problem, a, b, [event.crossings for event in events])
+        if not reason:
+            return nodes
+        middle = None
+        if segment.length > _FLOOR:
+            try:
+                middle = segment.point(0.5)[1]
+            except FAILURES:
+                middle = None
+        if middle is None and at_start:
+            # An eigenvalue is on the axis at the start itself, within the floor.
+            return nodes
+        if middle is None:
+            self._mismatches += 1
+            self._notes.append(
+                f"unexplained between {self._problem.parameter} = {a.parameter:.10g} and "
+                f"{b.parameter:.10g}: {reason}"
+            )
+            return nodes
+        self.divided = True
+        values = self._between(middle, before)
+        left = self._resolve(a, middle, before, values)
+        return [*left, (middle, None), *self._resolve(middle, b, values, after)]
+
+
+    def _critical_start(self) -> bool:
+        """Whether eigenvalues are on the axis at the start: it counts for neither side."""
+        detectors = self._builder.detectors
+        return any(self.doubtful[place] and detectors[place].crossings for place in self._places)
+
+
+def _apart(places: list[float]) -> list[float]:
+    """Return places in order, without those that nearly coincide."""
+    kept: list[float] = []
+    for at in sorted(places):
+        if not kept or at - kept[-1] > _APART:
+            kept.append(at)
+    return kept

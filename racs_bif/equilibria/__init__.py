@@ -1,0 +1,1 @@
+"""Equilibria: their branches, special points and normal forms."""

@@ -1,0 +1,36 @@
+"""LP: folds of a branch of equilibria."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from racs_bif.continuation.points import Point
+from racs_bif.continuation.problem import Detector
+from racs_bif.equilibria.problem import EquilibriumProblem
+
+
+class Fold(Detector):
+    """The tangent has no component along the parameter."""
+
+    label = "LP"
+    crossings = 1
+
+    def value(self, problem: EquilibriumProblem, point: Point) -> float:
+        """Return the tangent's component along the parameter."""
+        del problem
+        return float(point.tangent[-1])
+
+    def data(self, problem: EquilibriumProblem, point: Point) -> dict[str, Any]:
+        """Return the quadratic coefficient a of the fold's normal form.
+
+        With f_x q = 0, f_x^T p = 0, |q| = 1, <p, q> = 1: ``a = <p, B(q, q)> / 2`` (Yu. A. Kuznetsov,
+        *Elements of Applied Bifurcation Theory*, section 5.4); its sign depends on that of q.
+        """
+        x, p = point.z[:-1], problem.path.vector(point.z[-1])
+        left, singular, right = np.linalg.svd(problem.field.f_x(x, p))
+        del singular
+        q, adjoint = right[-1], left[:, -1]
+        adjoint = adjoint / (adjoint @ q)
+        return {"a": float(0.5 * adjoint @ problem.field.f_xx(x, p, q, q))}

@@ -1,0 +1,77 @@
+"""H: pairs of eigenvalues on the imaginary axis, told apart from neutral saddles."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from racs_bif.continuation.points import Point, Spectrum
+from racs_bif.continuation.problem import Detector
+from racs_bif.equilibria.hopf_form import hopf_form
+from racs_bif.equilibria.problem import EquilibriumProblem
+
+_REAL = 1e-7
+
+
+class Hopf(Detector):
+    """Two eigenvalues have zero sum.
+
+    Parameters
+    ----------
+    own : int
+        Number of leading states that are the model's own; see `hopf_form`.
+    """
+
+    label = "H"
+    crossings = 2
+
+    def __init__(self, own: int) -> None:
+        self.own = own
+
+    def value(self, problem: EquilibriumProblem, point: Point) -> float:
+        """Return the smallest of the sums that can change sign, with the sign of their product.
+
+        All sums of two eigenvalues multiply to the determinant of the bialternate product (Kuznetsov,
+        section 10.2.2). Sums of conjugates and of two real eigenvalues are real and decide its sign.
+        """
+        del problem
+        sums = _real_sums(point.spectrum)[0]
+        if not len(sums):
+            return float("nan")
+        sign = -1.0 if np.count_nonzero(sums < 0.0) % 2 else 1.0
+        return float(sign * np.abs(sums).min())
+
+    def data(self, problem: EquilibriumProblem, point: Point) -> dict[str, Any] | None:
+        """Return frequency, normal form and criticality; None at a neutral saddle."""
+        sums, frequencies = _real_sums(point.spectrum)
+        k = int(np.argmin(np.abs(sums)))
+        omega = float(frequencies[k])
+        if omega <= _REAL * (1.0 + np.abs(point.spectrum).max() * _REAL):
+            return None
+        z, path = point.z, problem.path
+        form = hopf_form(
+            problem.field,
+            z[:-1],
+            path.vector(z[-1]),
+            path.direction(z[-1]),
+            omega,
+            self.own,
+        )
+        return {
+            "omega": omega,
+            "l1": form.l1,
+            "c1": form.c1.real,
+            "criticality": "supercritical" if form.l1 < 0.0 else "subcritical",
+            "crossing_speed": form.mu_slope.real,
+            "form": form,
+        }
+
+
+def _real_sums(spectrum: Spectrum) -> tuple[np.ndarray, np.ndarray]:
+    """Return the real sums of two eigenvalues, and the frequency (0 for two real ones) of each."""
+    upper = spectrum[spectrum.imag > 0.0]
+    real = spectrum[spectrum.imag == 0.0].real
+    i, j = np.triu_indices(len(real), 1)
+    sums = np.concatenate([2.0 * upper.real, real[i] + real[j]])
+    return sums, np.concatenate([upper.imag, np.zeros(len(i))])

@@ -1,0 +1,1 @@
+"""Fractional-order elements: laws, rational realisations, and the exact operator."""

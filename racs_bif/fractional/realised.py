@@ -1,0 +1,246 @@
+"""The ordinary differential equation of a model whose elements are realised by filters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from racs_bif.fractional.filter import Filter, Realisation
+from racs_bif.fractional.laws import Law, read_direction, read_numbers
+from racs_bif.symbolic.compiled import CompiledModel
+from racs_bif.symbolic.field import Array, VectorField, Vectors
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """What depends on parameters only: x' = left @ core(right @ x, P) + (0, A z)."""
+
+    P: Array
+    laws: tuple[Law, ...]
+    filters: tuple[Filter, ...]
+    A: Array
+    left: Array
+    right: Array
+    fixed: Array
+
+
+class RealisedField(VectorField):
+    """The vector field of a compiled model; its states are (y, z), z the memory of the filters.
+
+    Parameters
+    ----------
+    compiled : CompiledModel
+        The model.
+    realisation : Realisation
+        What replaces each element's law. Not used by a model without elements.
+    """
+
+    def __init__(self, compiled: CompiledModel, realisation: Realisation) -> None:
+        self.compiled = compiled
+        self.realisation = realisation
+        self.parameters = tuple(p.name for p in compiled.parameters)
+        self._ny = len(compiled.states)
+        self._ne = len(compiled.elements)
+        self._key: bytes | None = None
+        self._kept: _Frame | None = None
+        self._names: tuple[str, ...] | None = None
+
+    @property
+    def states(self) -> tuple[str, ...]:  # type: ignore[override]
+        """Names of the model's states and of the memory states, ``memory_of_OUTPUT_k``."""
+        if self._names is None:
+            defaults = np.array(
+                [p.default if isinstance(p.default, float) else 1.0 for p in self.compiled.parameters]
+            )
+            memory = [
+                f"memory_of_{law.name}_{k + 1}"
+                for law in self.laws(defaults)
+                for k in range(len(self.realisation.realise(law).B))
+            ]
+            self._names = (*self.compiled.states, *memory)
+        return self._names
+
+    def laws(self, p: Array) -> tuple[Law, ...]:
+        """Return the laws of all elements at base parameters p (np,)."""
+        if not self._ne:
+            return ()
+        numbers = self.compiled.kernel("laws")(self.compiled.padded(p))
+        laws, start = [], 0
+        meta = self.compiled.meta["law_sizes"]
+        for name, through, (a, b) in zip(
+            self.compiled.elements, self.compiled.feedthrough, meta, strict=True
+        ):
+            stop = start + 2 * (a + b)
+            laws.append(read_numbers(name, numbers[start:stop], (a, b), feedthrough=through))
+            start = stop
+        return tuple(laws)
+
+    def law_directions(self, p: Array, dp: Array) -> tuple[Law, ...] | None:
+        """Return the derivatives of all laws along dp, None if no law moves."""
+        if not self._ne:
+            return None
+        padded = self.compiled.padded
+        slopes = self.compiled.kernel("laws_p")(padded(p), padded(dp))
+        if not slopes.any():
+            return None
+        numbers = self.compiled.kernel("laws")(padded(p))
+        directions, start = [], 0
+        for law, (a, b) in zip(self.laws(p), self.compiled.meta["law_sizes"], strict=True):
+            part = slice(start, start + 2 * (a + b))
+            directions.append(read_direction(numbers[part], slopes[part], (a, b), law))
+            start = part.stop
+        return tuple(directions)
+
+    def frame(self, p: Array) -> _Frame:
+        """Return what depends on parameters only, kept from call to call."""
+        p = np.ascontiguousarray(p, dtype=float)
+        key = p.tobytes()
+        if self._kept is None or key != self._key:
+            self._kept = self._make_frame(p)
+            self._key = key
+        return self._kept
+
+    def _make_frame(self, p: Array) -> _Frame:
+        laws = self.laws(p)
+        filters = tuple(self.realisation.realise(law) for law in laws)
+        P = np.concatenate([p, [f.D for f in filters]])
+        A = _diagonal([f.A for f in filters])
+        eye = np.eye(self._ny)
+        left = _diagonal([eye, _diagonal([f.B[:, None] for f in filters])])
+        right = _diagonal([eye, _diagonal([f.C[None, :] for f in filters])])
+        fixed = left @ self.compiled.fixed_jacobian(P) @ right
+        fixed[self._ny :, self._ny :] += A
+        return _Frame(P, laws, filters, A, left, right, fixed)
+
+    def core_point(self, x: Array, p: Array) -> Array:
+        """Return X = (y, zeta) of states x, shaped (ny + ne,) or (ny + ne, N)."""
+        return x if not self._ne else self.frame(p).right @ x
+
+    def f(self, x: Array, p: Array) -> Array:
+        """Return the right-hand side, shaped like `x`."""
+        frame = self.frame(p)
+        if not self._ne:
+            return self.compiled.core(x, frame.P)
+        value = frame.left @ self.compiled.core(frame.right @ x, frame.P)
+        value[self._ny :] += frame.A @ x[self._ny :]
+        return value
+
+    def f_x(self, x: Array, p: Array) -> Array:
+        """Return the Jacobian, (n, n) for one point or (N, n, n) for N points."""
+        frame = self.frame(p)
+        if not self._ne:
+            return self.compiled.core_jacobian(x, frame.P)
+        rows, columns = self.compiled.varying_at
+        values = self.compiled.varying_jacobian(frame.right @ x, frame.P)
+        size = self.compiled.size
+        if x.ndim == 1:
+            varying = np.zeros((size, size))
+            varying[rows, columns] = values
+        else:
+            varying = np.zeros((x.shape[1], size, size))
+            varying[:, rows, columns] = values.T
+        return np.asarray(frame.fixed + frame.left @ varying @ frame.right)
+
+    def f_p(self, x: Array, p: Array, dp: Array) -> Array:
+        """Return the derivative of f along `dp`, shaped like `x`."""
+        frame, slopes = self.frame(p), self._filter_slopes(p, dp)
+        X, dP = frame.right @ x, self._full_direction(dp, slopes)
+        value = self.compiled.core_p(X, frame.P, _like(dP, x))
+        if slopes is None:
+            return np.asarray(frame.left @ value)
+        z = x[self._ny :]
+        memory = _diagonal([s.C[None, :] for s in slopes]) @ z
+        jacobian = self.compiled.core_jacobian(X, frame.P)[..., self._ny :]
+        through = jacobian @ memory if x.ndim == 1 else np.einsum("Nij,jN->iN", jacobian, memory)
+        result = frame.left @ (value + through)
+        e = self.compiled.core(X, frame.P)[self._ny :]
+        result[self._ny :] += _diagonal([s.A for s in slopes]) @ z
+        result[self._ny :] += _diagonal([s.B[:, None] for s in slopes]) @ e
+        return np.asarray(result)
+
+    def f_xx(self, x: Array, p: Array, u: Vectors, v: Vectors) -> Vectors:
+        """Return the bilinear form B(u, v) at one point, shaped like the directions."""
+        frame = self.frame(p)
+        R = frame.right
+        return np.asarray(frame.left @ self.compiled.core_xx(R @ x, frame.P, R @ u, R @ v))
+
+    def f_xxx(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:
+        """Return the trilinear form C(u, v, w) at one point, shaped like the directions."""
+        frame = self.frame(p)
+        R = frame.right
+        value = self.compiled.core_xxx(R @ x, frame.P, R @ u, R @ v, R @ w)
+        return np.asarray(frame.left @ value)
+
+    def f_xp(self, x: Array, p: Array, v: Vectors, dp: Array) -> Vectors:
+        """Return the derivative of f_x v along `dp` at one point."""
+        frame, slopes = self.frame(p), self._filter_slopes(p, dp)
+        R, core = frame.right, self.compiled
+        X, V, dP = R @ x, R @ v, self._full_direction(dp, slopes)
+        value = core.core_xp(X, frame.P, V, _like(dP, v))
+        if slopes is None:
+            return np.asarray(frame.left @ value)
+        C_p = _diagonal([s.C[None, :] for s in slopes])
+        jacobian = core.core_jacobian(X, frame.P)
+        moved = np.zeros_like(X)
+        moved[self._ny :] = C_p @ x[self._ny :]
+        value = value + core.core_xx(X, frame.P, V, _like(moved, v))
+        value = value + jacobian[:, self._ny :] @ (C_p @ v[self._ny :])
+        result = frame.left @ value
+        result[self._ny :] += _diagonal([s.A for s in slopes]) @ v[self._ny :]
+        result[self._ny :] += _diagonal([s.B[:, None] for s in slopes]) @ (jacobian @ V)[self._ny :]
+        return np.asarray(result)
+
+    def _filter_slopes(self, p: Array, dp: Array) -> tuple[Filter, ...] | None:
+        directions = self.law_directions(p, dp)
+        if directions is None:
+            return None
+        pairs = zip(self.frame(p).laws, directions, strict=True)
+        return tuple(self.realisation.derivative(law, direction) for law, direction in pairs)
+
+    def _full_direction(self, dp: Array, slopes: tuple[Filter, ...] | None) -> Array:
+        if slopes is None:
+            return self.compiled.padded(dp)
+        return np.concatenate([dp, [s.D for s in slopes]])
+
+    def rest(self, y: Array, w: Array, p: Array) -> Array:
+        """Return the states (n,) at which model and filters rest.
+
+        Parameters
+        ----------
+        y : array (ny,)
+            The model's states at an exact equilibrium.
+        w : array (ne,)
+            Outputs of the elements there.
+        p : array (np,)
+            Base parameters.
+        """
+        frame = self.frame(p)
+        exact = np.concatenate([y, w])
+        inputs = self.compiled.core(exact, self.compiled.padded(p))[self._ny :]
+        parts = [y]
+        for e, output, f in zip(inputs, w, frame.filters, strict=True):
+            # The last row fixes the state of an integrator, which A alone leaves free.
+            matrix = np.vstack([f.A, f.C])
+            right = np.append(-f.B * e, output - f.D * e)
+            parts.append(np.linalg.lstsq(matrix, right, rcond=None)[0])
+        return np.concatenate(parts)
+
+
+def _like(direction: Array, x: Vectors) -> Array:
+    """Return a direction with as many columns as `x`."""
+    if x.ndim == 1:
+        return direction
+    return np.broadcast_to(direction[:, None], (len(direction), x.shape[1]))
+
+
+def _diagonal(blocks: list[Array]) -> Array:
+    """Return the block-diagonal matrix of (possibly empty) blocks."""
+    rows = sum(b.shape[0] for b in blocks)
+    columns = sum(b.shape[1] for b in blocks)
+    out = np.zeros((rows, columns))
+    i = j = 0
+    for b in blocks:
+        out[i : i + b.shape[0], j : j + b.shape[1]] = b
+        i, j = i + b.shape[0], j + b.shape[1]
+    return out

@@ -1,0 +1,1 @@
+"""Newton's method, bordered solves, root bracketing: thin layers over numpy and LAPACK."""

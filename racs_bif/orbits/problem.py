@@ -1,0 +1,58 @@
+"""What all discretisations of periodic orbits have in common."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from racs_bif.continuation.problem import Problem
+
+if TYPE_CHECKING:
+    from racs_bif.orbits.floquet import Floquet
+    from racs_bif.orbits.orbit import Orbit
+    from racs_bif.symbolic.field import Array
+
+
+class OrbitProblem(Problem):
+    """A boundary-value problem of periodic orbits, by whichever discretisation.
+
+    Detectors, curves and results ask for nothing more than this. The spectrum is the Floquet
+    multipliers with the trivial one first; stability never asks that one.
+    """
+
+    @abstractmethod
+    def period(self, z: Array) -> float:
+        """Return the period, in units of time."""
+
+    @abstractmethod
+    def degenerate(self, z: Array) -> bool:
+        """Return whether `z` is no proper orbit, such as the Hopf point that a branch starts from.
+
+        Test functions are not defined there: with no amplitude the period is free, and the branch of
+        equilibria passes through.
+        """
+
+    @abstractmethod
+    def floquet(self, z: Array) -> Floquet:
+        """Return the multipliers and the error of the trivial one."""
+
+    @abstractmethod
+    def orbit(self, z: Array, samples: int = 201) -> Orbit:
+        """Return the orbit as a result, sampled at equal times over one period."""
+
+    def spectrum(self, z: Array) -> NDArray[np.complex128]:
+        """Return the multipliers (n,), the trivial one first."""
+        return self.floquet(z).multipliers
+
+    def unstable(self, spectrum: NDArray[np.complex128]) -> int:
+        """Return how many multipliers other than the trivial one are outside the unit circle."""
+        return int(np.count_nonzero(self.sides(spectrum)))
+
+    def sides(self, spectrum: NDArray[np.complex128]) -> NDArray[np.bool_]:
+        """Return which multipliers (n,) are outside the unit circle, the trivial one exempt."""
+        outside = np.asarray(np.abs(spectrum) > 1.0)
+        outside[:1] = False
+        return outside

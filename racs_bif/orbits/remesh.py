@@ -1,0 +1,113 @@
+"""Adaptation of the mesh between steps along a branch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from racs_bif.orbits.dense import ORDER, Profile
+from racs_bif.orbits.mesh import Mesh, equidistributed, rounded
+from racs_bif.orbits.radau import ABSCISSAE
+
+if TYPE_CHECKING:
+    from racs_bif.orbits.flow import Derivative, Flow
+    from racs_bif.orbits.settings import OrbitSettings
+    from racs_bif.symbolic.field import Array
+
+_UNEVEN: Final = 2.0
+"""Largest share of a step over the mean share at which the nodes stay where they are."""
+_SPARE: Final = 1.25
+"""How many more steps are taken than the tolerance asks for, and how much of them lies evenly."""
+_TOO_MANY: Final = 2.0
+"""Steps are given back when there are so many times more than needed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """An orbit and a tangent on another mesh.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        The new mesh.
+    stages : array (N, 3, n)
+        The orbit at the Radau points of the new mesh.
+    z, tangent : array (M n + 2,)
+        Unknowns and tangent on it, to the accuracy of the dense output.
+    """
+
+    mesh: Mesh
+    stages: Array
+    z: Array
+    tangent: Array
+
+
+def better_mesh(
+    flow: Flow,
+    derivative: Derivative,
+    scales: Array,
+    settings: OrbitSettings,
+    *,
+    trivial_error: float,
+) -> Mesh | None:
+    """Return a better mesh for an orbit, or None where the present one will do.
+
+    The steps are moved when their shares of the error have become uneven; their number follows the
+    tolerance, and is doubled when the trivial multiplier is off; the number of segments follows the
+    growth of the variational solution over a segment.
+    """
+    mesh = flow.mesh
+    errors = flow.profile.errors(scales)
+    segments = _segments(mesh.segments, derivative, scales, settings)
+    steps = rounded(_steps(mesh.steps, errors, settings, trivial_error), segments)
+    share = errors ** (1.0 / ORDER)
+    uneven = float(share.max()) > _UNEVEN * float(share.mean())
+    same = steps == mesh.steps and segments == mesh.segments
+    wanted = uneven and float(errors.max()) > 0.1 * settings.tolerance
+    if same and not wanted:
+        return None
+    return equidistributed(mesh, errors, ORDER, steps, segments)
+
+
+def _steps(steps: int, errors: Array, settings: OrbitSettings, trivial_error: float) -> int:
+    needed = _SPARE * float(np.sum((errors / settings.tolerance) ** (1.0 / ORDER)))
+    wanted = steps
+    if needed > steps:
+        wanted = int(np.ceil(_SPARE * needed))
+    elif trivial_error > settings.trivial:
+        wanted = 2 * steps
+    elif _TOO_MANY * needed < steps and trivial_error < 1e-3 * settings.trivial:
+        wanted = int(np.ceil(_SPARE * needed))
+    return min(max(wanted, settings.steps), settings.most_steps)
+
+
+def _segments(
+    segments: int, derivative: Derivative, scales: Array, settings: OrbitSettings
+) -> int:
+    size = len(scales)
+    balanced = derivative.ends[:, :, :size] * (scales / scales[:, None])
+    growth = float(np.linalg.norm(balanced, axis=(1, 2)).max())
+    if growth > settings.growth and 4 * segments <= settings.most_steps:
+        return 2 * segments
+    if growth < settings.growth**0.25 and segments >= 2 * settings.segments:
+        return segments // 2
+    return segments
+
+
+def moved(flow: Flow, derivative: Derivative, tangent: Array, mesh: Mesh) -> Moved:
+    """Interpolate an orbit and a tangent (M n + 2,) on another mesh."""
+    size = flow.origins.shape[1]
+    by_start = tangent[:-2].reshape(-1, size)
+    changes = Profile(
+        flow.mesh, *derivative.changes(by_start, float(tangent[-2]), float(tangent[-1]))
+    )
+    profile = flow.profile
+    starts, directions = profile(mesh.starts), changes(mesh.starts)
+    return Moved(
+        mesh=mesh,
+        stages=profile(mesh.times(ABSCISSAE)),
+        z=np.concatenate((starts.ravel(), (flow.period, flow.active))),
+        tangent=np.concatenate((directions.ravel(), tangent[-2:])),
+    )

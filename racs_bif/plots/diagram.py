@@ -1,0 +1,208 @@
+"""The bifurcation diagram: equilibria, extremes of orbits, special points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from racs_bif.errors import UsageError, nearest
+from racs_bif.plots.style import BLACK, BLUE, SIZE, VERMILION, style
+from racs_bif.plots.text import axis_label
+from racs_bif.results.stability import merged, stretches
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from racs_bif.results.branch import Branch
+    from racs_bif.results.diagram import Diagram
+    from racs_bif.results.special import SpecialPoint
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a kind of branch is drawn and what the legend calls it."""
+
+    title: str
+    colour: str
+    width: float
+
+
+LOOKS: Final = {
+    "equilibrium": Look("equilibrium", BLACK, 1.0),
+    "orbit": Look("orbit, max and min", BLUE, 1.5),
+}
+PATTERNS: Final = {"stable": "-", "unstable": (0, (3.2, 1.6)), "unknown": (0, (0.8, 1.2))}
+"""Line patterns by stability."""
+MARKERS: Final = {"H": "o", "LP": "s", "BP": "D", "LPC": "s", "PD": "^", "NS": "v", "BPC": "D"}
+_OTHER: Final = "X"
+_UNMARKED: Final = frozenset({"EP", "MX"})
+
+
+def draw(diagram: Diagram, state: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw a bifurcation diagram.
+
+    Equilibria and the largest and smallest values on orbits against the first active parameter;
+    solid where stable, dashed where unstable, dotted where that is not known.
+
+    Parameters
+    ----------
+    diagram : Diagram
+        What to draw.
+    state : str, optional
+        State or other quantity on the vertical axis. By default what the model suggests: the input
+        of its first fractional element, or its first state.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        What was drawn on.
+
+    Raises
+    ------
+    UsageError
+        If no branch has the quantity.
+    """
+    quantity = shown_quantity(diagram, state)
+    with style():
+        if ax is None:
+            from matplotlib import pyplot as plt
+
+            ax = plt.subplots(figsize=SIZE, layout="constrained")[1]
+            _draw(diagram, quantity, ax)
+            _label(diagram, quantity, ax, settle=True)
+        else:
+            _draw(diagram, quantity, ax)
+            _label(diagram, quantity, ax, settle=False)
+    return ax
+
+
+def picture(diagram: Diagram, state: str | None = None) -> Figure:
+    """Return the diagram as a figure of its own, for a file; no window is opened.
+
+    Raises
+    ------
+    UsageError
+        If no branch has the quantity.
+    """
+    from matplotlib.figure import Figure
+
+    quantity = shown_quantity(diagram, state)
+    with style():
+        figure = Figure(figsize=SIZE, layout="constrained")
+        ax = figure.add_subplot()
+        _draw(diagram, quantity, ax)
+        _label(diagram, quantity, ax, settle=True)
+    return figure
+
+
+def shown_quantity(diagram: Diagram, state: str | None = None) -> str:
+    """Return the quantity on the vertical axis.
+
+    Raises
+    ------
+    UsageError
+        If no branch has the one that is wanted.
+    """
+    system = diagram.branches[0].system
+    known = list(dict.fromkeys(name for branch in diagram for name in _quantities(branch)))
+    if state is None:
+        return system.shown if system.shown in known else known[0]
+    if state not in known:
+        msg = f"nothing called '{state}' to plot; {nearest(state, known)}"
+        raise UsageError(msg)
+    return state
+
+
+def _quantities(branch: Branch) -> list[str]:
+    extremes = [name[4:] for name in branch.measures if name.startswith("max ")]
+    plain = [name for name in branch.measures if not name.startswith(("max ", "min "))]
+    return [*(branch.state_names if branch.kind == "equilibrium" else ()), *extremes, *plain]
+
+
+def _curves(branch: Branch, quantity: str) -> list[NDArray[np.float64]]:
+    """Return the columns that show a quantity: itself, or its largest and smallest values."""
+    if f"max {quantity}" in branch.measures:
+        return [branch.column(f"max {quantity}"), branch.column(f"min {quantity}")]
+    return [branch.column(quantity)] if quantity in _quantities(branch) else []
+
+
+def _draw(diagram: Diagram, quantity: str, ax: Axes) -> None:
+    titles: set[str] = set()
+    for branch in diagram:
+        look = LOOKS.get(branch.kind, Look(branch.kind, VERMILION, 1.0))
+        x = branch.parameter
+        for y in _curves(branch, quantity):
+            for part in merged(stretches(branch)):
+                title = f"{look.title}, {part.kind}"
+                ax.plot(
+                    x[part.first : part.last + 1],
+                    y[part.first : part.last + 1],
+                    color=look.colour,
+                    linewidth=look.width,
+                    linestyle=PATTERNS[part.kind],
+                    label=title if title not in titles else f"_{branch.name}",
+                )
+                titles.add(title)
+            _mark(branch, y, ax)
+    first = diagram.branches[0]
+    name = first.parameters[0]
+    ax.set_xlabel(axis_label(name, first.system.unit(name)))
+    ax.set_ylabel(axis_label(quantity, first.system.unit(quantity)))
+    ax.margins(x=0.02, y=0.12)
+
+
+def _mark(branch: Branch, y: NDArray[np.float64], ax: Axes) -> None:
+    colour = LOOKS[branch.kind].colour if branch.kind in LOOKS else VERMILION
+    for point in branch.special:
+        if point.label in _UNMARKED or point.index < 0:
+            continue
+        user = point.label == "UZ"
+        ax.plot(
+            [branch.parameter[point.index]],
+            [y[point.index]],
+            marker="o" if user else MARKERS.get(point.label, _OTHER),
+            markersize=2.2 if user else 4.0,
+            markerfacecolor="white" if user else colour,
+            markeredgecolor=colour if user else "white",
+            markeredgewidth=0.6 if user else 0.4,
+            linestyle="None",
+            label=f"_{point.name}",
+            zorder=5,
+        )
+
+
+def _label(diagram: Diagram, quantity: str, ax: Axes, *, settle: bool) -> None:
+    """Add the legend, then the names of special points where nothing else is."""
+    from racs_bif.plots.placing import Label, covers_curve, place
+
+    ax.autoscale_view()
+    legend = ax.legend(loc="best")
+    if settle:
+        _settle(ax)
+    if covers_curve(ax, legend.get_window_extent()):
+        legend = ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, columnspacing=1.0)
+        if settle:
+            _settle(ax)
+    labels = []
+    for branch in diagram:
+        for y in _curves(branch, quantity)[:1]:
+            for point in filter(_is_named, branch.special):
+                x = float(branch.parameter[point.index])
+                labels.append(Label(point.name, x, float(y[point.index])))
+    place(ax, labels, taken=[legend.get_window_extent()])
+
+
+def _settle(ax: Axes) -> None:
+    """Let the layout of a figure that was made here find its final place for the axes."""
+    figure = ax.get_figure()
+    if figure is not None:
+        figure.draw_without_rendering()  # type: ignore[union-attr]  # no subfigure
+
+
+def _is_named(point: SpecialPoint) -> bool:
+    return point.label not in _UNMARKED | {"UZ"} and point.index >= 0

@@ -1,0 +1,257 @@
+"""A branch as data: columns along the arclength, special points, and why it ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from racs_bif.errors import UsageError, nearest
+from racs_bif.results.same import same
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import pandas as pd
+
+    from racs_bif.results.provenance import SystemInfo
+    from racs_bif.results.special import SpecialPoint
+
+Reals = NDArray[np.float64]
+_SAME_VALUE = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Profile:
+    """One period of an orbit.
+
+    Parameters
+    ----------
+    times : array (nt,)
+        From 0 to the period, s.
+    names : tuple of str
+        The states.
+    states : array (nt, n)
+        Their values, SI.
+    """
+
+    times: Reals
+    names: tuple[str, ...]
+    states: Reals
+
+    def __eq__(self, other: object) -> bool:
+        """Compare bit by bit."""
+        return same(self, other) if isinstance(other, Profile) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Branch:
+    """A branch of equilibria or of periodic orbits, npoints long.
+
+    Parameters
+    ----------
+    name : str
+        "EQ1", "PO1".
+    kind : str
+        "equilibrium", "orbit" or "curve".
+    parameters : tuple of str
+        Active parameters.
+    values : array (npoints, number of active parameters)
+        Their values, SI.
+    arclength : array (npoints,)
+        Scaled arclength.
+    stable : bool array (npoints,)
+        Stability; False where it is not known.
+    unstable : int array (npoints,)
+        Number of unstable eigenvalues or multipliers; -1 where it is not known.
+    spectrum : complex array (npoints, m)
+        Eigenvalues or multipliers, padded with NaN.
+    labels : tuple of str
+        Label of each point, empty for most.
+    state_names : tuple of str
+        Names of the columns of `states`, the model's own first.
+    states : array (npoints, n)
+        States of equilibria; n may be 0 for orbits.
+    measures : dict of str to array (npoints,)
+        What may be plotted: ``"max delta_c"``, ``"min delta_c"``, ``"period"``.
+    special : tuple of SpecialPoint
+        Special, user and end points in the order of the branch.
+    stopped : str
+        Why the branch ended and what to do about it.
+    early : bool
+        True where that is not what was asked for.
+    system : SystemInfo
+        What it was computed from.
+    method : str
+        How: "shooting", ...
+    profiles : dict of str to Profile
+        One period of the orbit at special points, under their names.
+
+    Raises
+    ------
+    ValueError
+        If the columns do not have the same length.
+    """
+
+    name: str
+    kind: str
+    parameters: tuple[str, ...]
+    values: Reals
+    arclength: Reals
+    stable: NDArray[np.bool_]
+    unstable: NDArray[np.int64]
+    spectrum: NDArray[np.complex128]
+    labels: tuple[str, ...]
+    stopped: str
+    early: bool
+    system: SystemInfo
+    state_names: tuple[str, ...] = ()
+    states: Reals = field(default_factory=lambda: np.empty((0, 0)))
+    measures: Mapping[str, Reals] = field(default_factory=dict)
+    special: tuple[SpecialPoint, ...] = ()
+    method: str = ""
+    profiles: Mapping[str, Profile] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Bring the columns to their types and check that they fit together."""
+        count = len(self.labels)
+        freeze = object.__setattr__
+        values = np.asarray(self.values, dtype=float)
+        freeze(self, "values", values.reshape(len(values), -1))
+        freeze(self, "arclength", np.asarray(self.arclength, dtype=float))
+        freeze(self, "stable", np.asarray(self.stable, dtype=bool))
+        freeze(self, "unstable", np.asarray(self.unstable, dtype=np.int64))
+        freeze(self, "spectrum", np.asarray(self.spectrum, dtype=complex).reshape(count, -1))
+        freeze(self, "labels", tuple(self.labels))
+        freeze(self, "special", tuple(self.special))
+        freeze(self, "measures", {k: np.asarray(v, float) for k, v in self.measures.items()})
+        states = np.asarray(self.states, dtype=float)
+        freeze(self, "states", states if states.size else np.empty((count, len(self.state_names))))
+        columns = [self.values, self.arclength, self.stable, self.unstable, self.spectrum]
+        columns += [self.states, *self.measures.values()]
+        widths = (self.values.shape[1], self.states.shape[1])
+        if {len(column) for column in columns} != {count} or widths != (
+            len(self.parameters),
+            len(self.state_names),
+        ):
+            msg = f"branch {self.name}: its columns are not all {count} points long, or lack names"
+            raise ValueError(msg)
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.labels)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare bit by bit; what special points start from is left out."""
+        return same(self, other) if isinstance(other, Branch) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """Return one line: what, where, how long, and its special points."""
+        names = ", ".join(point.name for point in self.special) or "none"
+        ends = f"{self.values[0, 0]:.6g} to {self.values[-1, 0]:.6g}" if len(self) else "empty"
+        return (
+            f"<{self.kind} branch {self.name}: {len(self)} points, "
+            f"{self.parameters[0]} {ends}, special points: {names}>"
+        )
+
+    @property
+    def parameter(self) -> Reals:
+        """The first active parameter along the branch, (npoints,)."""
+        first: Reals = self.values[:, 0]
+        return first
+
+    def __getitem__(self, name: str) -> SpecialPoint:
+        """Return a special point by its name.
+
+        Raises
+        ------
+        UsageError
+            If there is none; the message names those there are.
+        """
+        for point in self.special:
+            if point.name == name:
+                return point
+        there = nearest(name, [point.name for point in self.special])
+        msg = f"branch {self.name} has no special point '{name}'; {there}"
+        raise UsageError(msg)
+
+    def column(self, quantity: str) -> Reals:
+        """Return a parameter, state or measure along the branch, (npoints,).
+
+        Raises
+        ------
+        UsageError
+            If the branch has no such column.
+        """
+        columns = self._columns()
+        if quantity not in columns:
+            msg = f"branch {self.name} has no '{quantity}'; {nearest(quantity, columns)}"
+            raise UsageError(msg)
+        return columns[quantity]
+
+    def at(self, **values: float) -> SpecialPoint:
+        """Return the point that was computed exactly at a value of an active parameter.
+
+        Raises
+        ------
+        UsageError
+            If no labelled point is there, or several are.
+        """
+        for name in values:
+            if name not in self.parameters:
+                msg = f"'{name}' is not active on {self.name}; {nearest(name, self.parameters)}"
+                raise UsageError(msg)
+        where = ", ".join(f"{name}={value:g}" for name, value in values.items())
+        found = [point for point in self.special if _is_at(point, values)]
+        if not found:
+            numbers = ", ".join(f"{value:g}" for value in values.values())
+            msg = (
+                f"no point of {self.name} was computed exactly at {where}; "
+                f"ask for it with at=({numbers},) when continuing"
+            )
+            raise UsageError(msg)
+        if len(found) > 1:
+            names = ", ".join(point.name for point in found)
+            msg = f"{self.name} passes {where} more than once: take one of {names} by name"
+            raise UsageError(msg)
+        return found[0]
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the branch as a table, a point a row: parameters, states, measures, stability."""
+        import pandas as pd
+
+        columns: dict[str, object] = dict(self._columns())
+        columns |= {"stable": self.stable, "unstable": self.unstable, "label": list(self.labels)}
+        return pd.DataFrame(columns)
+
+    def special_table(self) -> pd.DataFrame:
+        """Return the special points as a table, a point a row, with numbers and words only."""
+        import pandas as pd
+
+        rows = []
+        for point in self.special:
+            row: dict[str, object] = {"name": point.name, "label": point.label}
+            row |= point.parameters
+            if point.exact is not None:
+                row |= {f"{name} exact": value for name, value in point.exact.parameters.items()}
+            row |= {k: v for k, v in point.data.items() if not isinstance(v, np.ndarray)}
+            rows.append(row)
+        return pd.DataFrame(rows)
+
+    def _columns(self) -> dict[str, Reals]:
+        columns = dict(zip(self.parameters, self.values.T, strict=True))
+        columns |= dict(zip(self.state_names, self.states.T, strict=True))
+        return columns | dict(self.measures)
+
+
+def _is_at(point: SpecialPoint, values: Mapping[str, float]) -> bool:
+    return all(
+        abs(point.parameters[name] - value) <= _SAME_VALUE * max(1.0, abs(value))
+        for name, value in values.items()
+    )

@@ -1,0 +1,141 @@
+"""Branches from trees of named numbers."""
+
+from __future__ import annotations
+
+from operator import itemgetter
+
+import numpy as np
+
+from racs_bif.results.branch import Branch, Profile
+from racs_bif.results.encode import EIGENVALUES, SPECTRA, TIME
+from racs_bif.results.provenance import RealisationInfo, SystemInfo
+from racs_bif.results.special import ExactPoint, SpecialPoint, Value
+from racs_bif.results.tree import Node, Variable, complex_array, real_array, words, words_array
+
+
+def decode_branch(node: Node) -> Branch:
+    """Return the branch that `encode.encode_branch` made a tree of."""
+    kind = str(node.attributes["kind"])
+    count = len(node.variables["arclength"].data)
+    parameters, values = _columns(node, "parameter", count)
+    state_names, states = _columns(node, "state", count)
+    measure_names, measures = _columns(node, "measure", count)
+    special = node.groups.get("special_points", Node())
+    profiles = node.groups.get("profiles", Node())
+    return Branch(
+        name=str(node.attributes["name"]),
+        kind=kind,
+        parameters=parameters,
+        values=values,
+        arclength=real_array(node.variables["arclength"]),
+        stable=node.variables["stable"].data.astype(bool),
+        unstable=node.variables["unstable"].data.astype(np.int64),
+        spectrum=complex_array(node.variables[SPECTRA.get(kind, EIGENVALUES)]),
+        labels=words_array(node.variables["label"]),
+        stopped=str(node.attributes["stopped"]),
+        early=bool(node.attributes["early"]),
+        system=_decode_system(node.groups["system"]),
+        state_names=state_names,
+        states=states,
+        measures=dict(zip(measure_names, np.ascontiguousarray(measures.T), strict=True)),
+        special=tuple(_decode_special(special.groups[name]) for name in _order(special)),
+        method=str(node.attributes["method"]),
+        profiles={name: _decode_profile(profiles.groups[name]) for name in _order(profiles)},
+    )
+
+
+def _decode_system(node: Node) -> SystemInfo:
+    text = {key: str(node.attributes[key]) for key in ("model", "title", "variant", "version")}
+    realisation = None
+    if "realisation" in node.groups:
+        how = node.groups["realisation"]
+        low, high = how.variables["band"].data
+        realisation = RealisationInfo(
+            name=str(how.attributes["name"]),
+            states=_integer(how, "states"),
+            band=(float(low), float(high)),
+            error=_real(how, "error"),
+        )
+    values = node.variables["parameter_value"].data.tolist()
+    units = zip(
+        words_array(node.variables["unit_of"]), words_array(node.variables["unit"]), strict=True
+    )
+    return SystemInfo(
+        **text,
+        states=words(node.attributes.get("states")),
+        notes=words(node.attributes.get("notes")),
+        parameters=dict(zip(words_array(node.variables["parameter_name"]), values, strict=True)),
+        units=dict(units),
+        shown=str(node.attributes["shown"]),
+        realisation=realisation,
+    )
+
+
+def _decode_special(node: Node) -> SpecialPoint:
+    exact = node.groups.get("exact")
+    return SpecialPoint(
+        label=str(node.attributes["label"]),
+        name=str(node.attributes["name"]),
+        branch=str(node.attributes["branch"]),
+        index=_integer(node, "index"),
+        parameters=_decode_numbers(node.groups["parameters"]),
+        state=_decode_numbers(node.groups["state"]),
+        data={name: _decode_value(v) for name, v in node.groups["data"].variables.items()},
+        exact=None
+        if exact is None
+        else ExactPoint(
+            parameters=_decode_numbers(exact.groups["parameters"]),
+            omega=_real(exact, "omega"),
+            shift=_decode_numbers(exact.groups["shift"]),
+        ),
+    )
+
+
+def _decode_profile(node: Node) -> Profile:
+    times = real_array(node.variables[TIME])
+    names, states = _columns(node, "state", len(times))
+    return Profile(times=times, names=names, states=states)
+
+
+def _decode_numbers(node: Node) -> dict[str, float]:
+    values = node.variables["value"].data.tolist()
+    return dict(zip(words_array(node.variables["name"]), values, strict=True))
+
+
+def _decode_value(variable: Variable) -> Value:
+    kind = variable.attributes["type"]
+    if kind == "str":
+        return words_array(variable)[0]
+    dtype = np.dtype(str(variable.attributes["dtype"]))
+    if dtype.kind == "c":
+        array: np.ndarray = complex_array(variable).astype(dtype)
+    else:
+        array = variable.data.astype(dtype)
+    if kind == "array":
+        return array
+    value: Value = array.item()
+    return value
+
+
+def _columns(node: Node, role: str, count: int) -> tuple[tuple[str, ...], np.ndarray]:
+    found = []
+    for variable in node.variables.values():
+        if variable.attributes.get("role") == role:
+            place, name = variable.attributes["place"], str(variable.attributes["long_name"])
+            found.append((place, name, real_array(variable)))
+    found.sort(key=itemgetter(0))
+    names = tuple(name for _, name, _ in found)
+    columns = [column for _, _, column in found]
+    return names, np.column_stack(columns) if columns else np.empty((count, 0))
+
+
+def _order(node: Node) -> tuple[str, ...]:
+    return words(node.attributes.get("order"))
+
+
+def _integer(node: Node, name: str) -> int:
+    return int(node.attributes[name])  # type: ignore[arg-type]
+
+
+def _real(node: Node, name: str) -> float:
+    return float(node.attributes[name])  # type: ignore[arg-type]

@@ -1,0 +1,192 @@
+"""Branches as trees of named numbers, for files."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from racs_bif.results.tree import (
+    COMPLEX,
+    Attribute,
+    Node,
+    Variable,
+    complex_variable,
+    words_variable,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from racs_bif.results.branch import Branch, Profile
+    from racs_bif.results.provenance import SystemInfo
+    from racs_bif.results.special import ExactPoint, SpecialPoint
+
+POINT, TIME, ROOT = "point", "time", "root"
+"""Dimensions: points along a branch, time along an orbit, eigenvalues or multipliers."""
+SPECTRA = {"orbit": "multipliers"}
+"""What the spectrum of a kind of branch is called, where it is not eigenvalues."""
+EIGENVALUES = "eigenvalues"
+FIXED = ("arclength", "stable", "unstable", "label", EIGENVALUES, *SPECTRA.values())
+"""Columns that every branch has; a parameter or state of the same name gives way."""
+
+
+def encode_branch(branch: Branch) -> Node:
+    """Return a branch as a tree that `decode.decode_branch` turns back into the same."""
+    node = Node(
+        attributes={
+            "name": branch.name,
+            "kind": branch.kind,
+            "stopped": branch.stopped,
+            "early": int(branch.early),
+            "method": branch.method,
+            "title": f"{branch.kind} branch {branch.name} of {branch.system.model}",
+        }
+    )
+    node.variables = {
+        "arclength": Variable((POINT,), branch.arclength, {"long_name": "scaled arclength"}),
+        "stable": Variable((POINT,), branch.stable.astype(np.int8), {"long_name": "1: stable"}),
+        "unstable": Variable(
+            (POINT,), branch.unstable, {"long_name": "number of unstable roots, -1: not known"}
+        ),
+        "label": words_variable(POINT, branch.labels),
+        SPECTRA.get(branch.kind, EIGENVALUES): complex_variable((POINT, ROOT), branch.spectrum),
+    }
+    columns = [("parameter", name, branch.values[:, k]) for k, name in enumerate(branch.parameters)]
+    columns += [("state", name, branch.states[:, k]) for k, name in enumerate(branch.state_names)]
+    columns += [("measure", name, column) for name, column in branch.measures.items()]
+    _add_columns(node, POINT, columns, branch.system)
+    node.groups["system"] = _encode_system(branch.system)
+    special = {point.name: _encode_special(point) for point in branch.special}
+    if special:
+        names = tuple(special)
+        node.groups["special_points"] = Node({"order": names}, groups=special)
+    profiles = {name: _encode_profile(p, branch.system) for name, p in branch.profiles.items()}
+    if profiles:
+        node.groups["profiles"] = Node({"order": tuple(profiles)}, groups=profiles)
+    return node
+
+
+def _encode_system(system: SystemInfo) -> Node:
+    node = Node(
+        attributes={
+            "model": system.model,
+            "title": system.title,
+            "variant": system.variant,
+            "shown": system.shown,
+            "version": system.version,
+            **_listed("states", system.states),
+            **_listed("notes", system.notes),
+        }
+    )
+    node.variables = {
+        "parameter_name": words_variable("parameter", tuple(system.parameters)),
+        "parameter_value": Variable(("parameter",), _numbers(system.parameters.values())),
+        "unit_of": words_variable("quantity", tuple(system.units)),
+        "unit": words_variable("quantity", tuple(system.units.values())),
+    }
+    if system.realisation is not None:
+        how = system.realisation
+        node.groups["realisation"] = Node(
+            {"name": how.name, "states": how.states, "error": how.error},
+            {"band": Variable(("end",), _numbers(how.band), {"units": "rad/s"})},
+        )
+    return node
+
+
+def _encode_special(point: SpecialPoint) -> Node:
+    node = Node(
+        attributes={
+            "label": point.label,
+            "name": point.name,
+            "branch": point.branch,
+            "index": point.index,
+        },
+        groups={
+            "parameters": _encode_numbers(point.parameters),
+            "state": _encode_numbers(point.state),
+            "data": Node(variables=_encode_data(point)),
+        },
+    )
+    if point.exact is not None:
+        node.groups["exact"] = _encode_exact(point.exact)
+    return node
+
+
+def _encode_exact(exact: ExactPoint) -> Node:
+    return Node(
+        {"omega": exact.omega},
+        groups={
+            "parameters": _encode_numbers(exact.parameters),
+            "shift": _encode_numbers(exact.shift),
+        },
+    )
+
+
+def _encode_profile(profile: Profile, system: SystemInfo) -> Node:
+    node = Node(variables={TIME: Variable((TIME,), profile.times, {"units": "s"})})
+    columns = [("state", name, profile.states[:, k]) for k, name in enumerate(profile.names)]
+    _add_columns(node, TIME, columns, system)
+    return node
+
+
+def _encode_numbers(numbers: Mapping[str, float]) -> Node:
+    return Node(
+        variables={
+            "name": words_variable("entry", tuple(numbers)),
+            "value": Variable(("entry",), _numbers(numbers.values())),
+        }
+    )
+
+
+def _encode_data(point: SpecialPoint) -> dict[str, Variable]:
+    found: dict[str, Variable] = {}
+    for name, value in point.data.items():
+        if isinstance(value, str):
+            text = np.array([value], dtype=object)
+            found[name] = Variable(("one",), text, {"type": "str"})
+            continue
+        array = np.asarray(value)
+        kind = "array" if isinstance(value, np.ndarray) else type(value).__name__
+        attributes: dict[str, Attribute] = {"type": kind, "dtype": array.dtype.str}
+        dimensions = tuple(f"{name}_{axis}" for axis in range(array.ndim))
+        if array.dtype.kind == "c":
+            found[name] = complex_variable(dimensions, array.astype(complex), attributes)
+        elif array.dtype.kind == "b":
+            found[name] = Variable(dimensions, array.astype(np.int8), attributes)
+        elif array.dtype.kind in "iuf":
+            found[name] = Variable(dimensions, array, attributes)
+        else:
+            msg = f"{point.name}: '{name}' holds {array.dtype}, a file takes numbers and words"
+            raise TypeError(msg)
+    return found
+
+
+def _add_columns(
+    node: Node, dimension: str, columns: Iterable[tuple[str, str, np.ndarray]], system: SystemInfo
+) -> None:
+    for place, (role, name, column) in enumerate(columns):
+        attributes: dict[str, Attribute] = {
+            "units": system.unit(name),
+            "long_name": name,
+            "role": role,
+            "place": place,
+        }
+        free = _variable_name(name, node)
+        node.variables[free] = Variable((dimension,), np.ascontiguousarray(column), attributes)
+
+
+def _variable_name(name: str, node: Node) -> str:
+    free = re.sub(r"\W", "_", name)
+    while free in node.variables or free in (*FIXED, POINT, TIME, ROOT, COMPLEX):
+        free += "_"
+    return free
+
+
+def _listed(name: str, texts: tuple[str, ...]) -> dict[str, Attribute]:
+    return {name: texts} if texts else {}
+
+
+def _numbers(values: Iterable[float]) -> np.ndarray:
+    return np.array(list(values), dtype=float)

@@ -1,0 +1,106 @@
+"""Results in netCDF-4 files: saved whole, loaded bit for bit, refused when they were changed.
+
+A file has a group for each branch, which opens in xarray::
+
+    xarray.open_dataset("branches.nc", group="EQ1", engine="h5netcdf")
+
+with the parameters, states and measures as variables that know their units, eigenvalues or
+multipliers with a trailing dimension ``re_im``, and beneath it groups with the system, the special
+points and the profiles of orbits.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from racs_bif.errors import FileError
+from racs_bif.results.atomic import write_atomically
+from racs_bif.results.branch import Branch
+from racs_bif.results.decode import decode_branch
+from racs_bif.results.diagram import Diagram
+from racs_bif.results.encode import encode_branch
+from racs_bif.results.tree import Node, fingerprint, read_tree, words, write_tree
+
+FORMAT = 1
+"""Version of the layout; a reader refuses a newer one."""
+_CHECKSUM = "sha256"
+
+
+def save(result: Branch | Diagram, path: str | Path) -> Path:
+    """Save a branch or a diagram as a netCDF-4 file.
+
+    The file appears whole or not at all.
+
+    Parameters
+    ----------
+    result : Branch or Diagram
+        What to save.
+    path : str or Path
+        Where; an existing file is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written there.
+    """
+    path = Path(path)
+    branches = (result,) if isinstance(result, Branch) else result.branches
+    node = Node(
+        attributes={
+            "Conventions": "CF-1.11",
+            "source": f"racs_bif {branches[0].system.version}".strip(),
+            "format": FORMAT,
+            "content": "branch" if isinstance(result, Branch) else "diagram",
+            "branches": tuple(branch.name for branch in branches),
+        },
+        groups={branch.name: encode_branch(branch) for branch in branches},
+    )
+    node.attributes[_CHECKSUM] = fingerprint(node)
+    write_atomically(path, lambda part: write_tree(part, node))
+    return path
+
+
+def load(path: str | Path) -> Branch | Diagram:
+    """Load what `save` saved, bit for bit.
+
+    Raises
+    ------
+    FileError
+        If there is no such file, or it is not one of ours, is damaged or changed, or was written
+        by a newer version.
+    """
+    path = Path(path)
+    node = _read(path)
+    version = node.attributes.get("format")
+    if not isinstance(version, int) or _CHECKSUM not in node.attributes:
+        msg = f"'{path}' was not saved by racs_bif; load files written by save()"
+        raise FileError(msg)
+    if version > FORMAT:
+        msg = (
+            f"'{path}' has file format {version}, this racs_bif reads up to {FORMAT}; "
+            "update racs_bif"
+        )
+        raise FileError(msg)
+    checksum = node.attributes.pop(_CHECKSUM)
+    if checksum != fingerprint(node):
+        msg = f"'{path}' was changed after it was saved: its checksum is wrong; compute it again"
+        raise FileError(msg)
+    branches = [decode_branch(node.groups[n]) for n in words(node.attributes["branches"])]
+    return branches[0] if node.attributes["content"] == "branch" else Diagram(*branches)
+
+
+def _read(path: Path) -> Node:
+    if not path.exists():
+        msg = f"there is no file '{path}'"
+        raise FileError(msg)
+    try:
+        return read_tree(path)
+    # h5py raises these, whichever it runs into first, for a file that is not HDF5 or lacks a part.
+    except (OSError, RuntimeError, KeyError, ValueError, AttributeError, TypeError) as error:
+        msg = f"'{path}' cannot be read: it is damaged, incomplete or not netCDF-4; {error}"
+        raise FileError(" ".join(msg.split())) from error

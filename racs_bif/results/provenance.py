@@ -1,0 +1,100 @@
+"""What a result was computed from: the model, its values, how its elements were realised."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from racs_bif.fractional.system import System
+
+
+@dataclass(frozen=True, kw_only=True)
+class RealisationInfo:
+    """How the fractional elements were made integer-order.
+
+    Parameters
+    ----------
+    name : str
+        Name of the method.
+    states : int
+        Number of states that it adds.
+    band : (float, float)
+        Frequencies between which it is meant to hold, rad/s.
+    error : float
+        Largest relative error of the frequency response over the band.
+    """
+
+    name: str
+    states: int
+    band: tuple[float, float]
+    error: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SystemInfo:
+    """The system behind a result, in words and numbers; enough to build it again.
+
+    Parameters
+    ----------
+    model, title, variant : str
+        Which model.
+    states : tuple of str
+        The model's own states, without those of a realisation.
+    parameters : dict of str to float
+        Every parameter, derived ones too, where it is not an active one; SI.
+    units : dict of str to str
+        Units of states, outputs and parameters.
+    shown : str
+        What to plot unless the user chooses; empty for the first state.
+    realisation : RealisationInfo, optional
+        Absent for a model without fractional elements.
+    notes : tuple of str
+        What a user must be told whenever the result is shown.
+    version : str
+        The racs_bif that computed it.
+    """
+
+    model: str
+    title: str = ""
+    variant: str = ""
+    states: tuple[str, ...] = ()
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    shown: str = ""
+    realisation: RealisationInfo | None = None
+    notes: tuple[str, ...] = ()
+    version: str = ""
+
+    def unit(self, quantity: str) -> str:
+        """Return the unit of a state, output, parameter or measure; empty where there is none."""
+        if quantity == "period":
+            return "s"
+        return self.units.get(quantity.removeprefix("max ").removeprefix("min "), "")
+
+
+def describe(system: System) -> SystemInfo:
+    """Return what every result says of the system that it was computed from."""
+    from racs_bif import __version__
+
+    meta = system.compiled.meta
+    how = system.realisation
+    inputs = [name for name in meta["input_states"] if name]
+    return SystemInfo(
+        model=system.name,
+        title=system.title,
+        variant=system.variant,
+        states=tuple(system.states),
+        parameters=dict(system.parameters),
+        units=system.state_units | {p.name: p.unit for p in system.parameter_table},
+        shown=inputs[0] if inputs else "",
+        realisation=RealisationInfo(
+            name=how.name, states=how.states, band=how.band, error=float(how.error)
+        )
+        if system.fractional
+        else None,
+        notes=tuple(system.notes),
+        version=__version__,
+    )

@@ -1,0 +1,239 @@
+"""From a name or a file to a system with numbers."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import hashlib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from racs_bif.equilibria.calibrate import calibrate
+from racs_bif.errors import ModelError, RacsBifError, UsageError, nearest
+from racs_bif.fractional.filter import Realisation
+from racs_bif.fractional.system import System, choose_realisation
+from racs_bif.shelf.folders import find
+from racs_bif.shelf.modules import complaint, load_module
+from racs_bif.symbolic import cache
+from racs_bif.symbolic.compiled import CompiledModel, compile_model, read_sources, write_sources
+from racs_bif.symbolic.field import Array
+from racs_bif.symbolic.model import Calibration, Model, Parameter
+
+_CLOSED = {
+    "__future__",
+    "collections",
+    "dataclasses",
+    "enum",
+    "functools",
+    "itertools",
+    "math",
+    "racs_bif",
+    "sympy",
+    "typing",
+}
+"""Modules that do not change between two runs of the same versions."""
+_OPEN_CALLS = {"open", "exec", "eval", "__import__", "compile", "input"}
+
+
+def load_model(  # noqa: PLR0913 - each is one choice of the user's
+    name: str,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    variant: str | None = None,
+    realisation: str | Realisation | None = None,
+    band: tuple[float, float] | None = None,
+    order: int = 0,
+) -> System:
+    """Load a model by name or by the path of its file.
+
+    Parameters
+    ----------
+    name : str
+        A model on the shelf, or a path ending in ``.py``.
+    parameters : mapping of str to float, optional
+        Values, SI, of base or derived parameters other than the defaults.
+    variant : str, optional
+        Variant of the model.
+    realisation : str or Realisation, optional
+        How fractional elements are realised.
+    band : (float, float), optional
+        Band of the realisation [rad/s]; the model's own where left out.
+    order : int
+        Order (sections) of the realisation; 0 takes its default.
+
+    Returns
+    -------
+    System
+        Compiled, with parameter values.
+
+    Raises
+    ------
+    UsageError
+        If the model, variant or realisation is unknown.
+    ModelError
+        If the file fails or what it builds cannot be compiled.
+    ParameterError
+        If a parameter is unknown or outside the model's validity.
+
+    Examples
+    --------
+    >>> load_model("racs", parameters={"c": 0.3}).parameters["c"]
+    0.3
+    """
+    path = find("models", name)
+    compiled = _compiled(path, {} if variant is None else {"variant": variant})
+
+    def again(options: Mapping[str, str]) -> CompiledModel:
+        return _compiled(path, dict(options))
+
+    return _system(compiled, again, parameters, realisation, band, order)
+
+
+def system_of(
+    model: Model | System,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    realisation: str | Realisation | None = None,
+    band: tuple[float, float] | None = None,
+    order: int = 0,
+) -> System:
+    """Return a system from a symbolic model; a system passes through.
+
+    Parameters
+    ----------
+    model : Model or System
+        What is to be computed with.
+    parameters, realisation, band, order
+        As in `load_model`; for a system only `parameters` may be given.
+    """
+    if isinstance(model, System):
+        return model.with_parameters(parameters) if parameters else model
+    if not isinstance(model, Model):
+        msg = f"{type(model).__name__} is no model; give a Model, or a name through load_model"
+        raise UsageError(msg)
+    compiled = compile_model(model)
+    return _system(compiled, lambda _: compiled, parameters, realisation, band, order)
+
+
+def _system(  # noqa: PLR0913 - what load_model was given
+    compiled: CompiledModel,
+    again: Callable[[Mapping[str, str]], CompiledModel],
+    parameters: Mapping[str, float] | None,
+    realisation: str | Realisation | None,
+    band: tuple[float, float] | None,
+    order: int,
+) -> System:
+    low, high = band or compiled.meta["band"]
+    chosen = choose_realisation(realisation, (low, high), order=order)
+    values = _defaults(compiled, again)
+    return System(compiled, values, chosen).with_parameters(parameters or {})
+
+
+def _compiled(path: Path, options: dict[str, str]) -> CompiledModel:
+    """Compile the model of a file, or take it from the cache.
+
+    Only a file that cannot depend on anything but its own text is taken by its text; any other is
+    run, and the equations that it builds are looked up.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeError) as error:
+        msg = f"model file {path} cannot be read: {error}"
+        raise ModelError(msg) from error
+    closed = _is_closed(text)
+    key = cache.key("file", text, repr(sorted(options.items())))
+    sources = read_sources(key) if closed else None
+    if sources is None:
+        compiled = compile_model(_build(path, options))
+        if closed:
+            write_sources(key, compiled.sources)
+        return compiled
+    return CompiledModel(sources)
+
+
+def _build(path: Path, options: dict[str, str]) -> Model:
+    function = getattr(load_module(path), "model", None)
+    if not callable(function):
+        msg = f"{path} defines no function 'model'; add 'def model() -> Model'"
+        raise ModelError(msg)
+    try:
+        model = function(**options)
+    except RacsBifError:
+        raise
+    except Exception as error:  # the file is the user's: anything may come out of it
+        if isinstance(error, TypeError) and options and "unexpected keyword" in str(error):
+            msg = f"model '{path.stem}' has no variants; leave --variant out"
+            raise UsageError(msg) from error
+        raise ModelError(complaint(path, error)) from error
+    if not isinstance(model, Model):
+        msg = f"'model()' in {path} returns {type(model).__name__}; return a racs_bif Model"
+        raise ModelError(msg)
+    return model
+
+
+def _is_closed(text: str) -> bool:
+    """Say whether a file's meaning depends on its text alone."""
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError):
+        return False
+    for node in ast.walk(tree):
+        modules: list[str] = []
+        if isinstance(node, ast.Import):
+            modules = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            modules = [node.module or ""] if not node.level else [""]
+        elif isinstance(node, ast.Name) and node.id in _OPEN_CALLS:
+            return False
+        if any(name.split(".")[0] not in _CLOSED for name in modules):
+            return False
+    return True
+
+
+def _defaults(
+    compiled: CompiledModel, again: Callable[[Mapping[str, str]], CompiledModel]
+) -> Array:
+    """Return default values, those that are calibrated computed or taken from the cache."""
+    values = np.array([_number(p.default) for p in compiled.parameters])
+    for k, parameter in enumerate(compiled.parameters):
+        if isinstance(parameter.default, Calibration):
+            basis = again(parameter.default.options)
+            values[k] = _calibrated(basis, parameter, parameter.default)
+    return values
+
+
+def _number(default: float | Calibration) -> float:
+    return float("nan") if isinstance(default, Calibration) else float(default)
+
+
+def _calibrated(compiled: CompiledModel, parameter: Parameter, wanted: Calibration) -> float:
+    key = cache.key("calibration", _package(), compiled.digest, parameter.name, repr(wanted))
+    stored = cache.read(f"{key}.txt")
+    if stored is not None:
+        return float(stored)
+    names = [p.name for p in compiled.parameters]
+    start = np.array([_number(p.default) for p in compiled.parameters])
+    low, high = compiled.meta["band"]
+    system = System(compiled, start, choose_realisation(None, (low, high)))
+    found = calibrate(system, wanted.parameter, wanted.hopf, span=wanted.span)
+    if parameter.name not in {wanted.parameter, *found.sets}:
+        hint = nearest(parameter.name, names)
+        msg = f"calibrating '{wanted.parameter}' does not set '{parameter.name}'; {hint}"
+        raise ModelError(msg)
+    value = float(found.parameters[parameter.name])
+    cache.write(f"{key}.txt", repr(value))
+    return value
+
+
+@functools.cache
+def _package() -> str:
+    """Return a digest of everything a computed default depends on: the whole package."""
+    digest = hashlib.sha256()
+    root = Path(__file__).parents[1]
+    for file in sorted(root.rglob("*.py")):
+        digest.update(str(file.relative_to(root)).encode())
+        digest.update(file.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,1 @@
+"""Symbolic models and their compilation into fast, exact, vectorised code."""

@@ -1,0 +1,133 @@
+"""Paths in parameter space along base and derived parameters of a compiled model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from racs_bif.errors import ParameterError, UsageError
+from racs_bif.symbolic.compiled import CompiledModel
+from racs_bif.symbolic.field import Array
+from racs_bif.symbolic.model import find_parameter
+from racs_bif.symbolic.paths import ParameterPath
+
+
+@dataclass(frozen=True)
+class CompiledPath(ParameterPath):
+    """Active parameters of a compiled model, base or derived, all others held.
+
+    A derived parameter moves the base parameter that it sets; while it is active it keeps its value
+    when another active parameter moves.
+
+    Parameters
+    ----------
+    compiled : CompiledModel
+        The model.
+    names : tuple of str
+        Active parameters.
+    values : array (np,)
+        Base parameters where they do not move.
+
+    Raises
+    ------
+    ParameterError
+        If a name is unknown.
+    UsageError
+        If two active parameters move the same base parameter.
+    """
+
+    compiled: CompiledModel
+    names: tuple[str, ...]
+    values: Array
+
+    def __post_init__(self) -> None:
+        """Check the names."""
+        targets = [_target(self.compiled, name) for name in self.names]
+        if len(set(targets)) < len(targets):
+            msg = f"{' and '.join(self.names)} move the same parameter; choose two that differ"
+            raise UsageError(msg)
+
+    def vector(self, active: ArrayLike) -> Array:
+        """Return the base parameters (np,) at the active values."""
+        wanted = dict(zip(self.names, np.atleast_1d(np.asarray(active, dtype=float)), strict=True))
+        return assign(self.compiled, self.values, wanted)
+
+    def direction(self, active: ArrayLike, index: int = 0) -> Array:
+        """Return the derivative (np,) of `vector` with respect to one active parameter."""
+        values = np.atleast_1d(np.asarray(active, dtype=float))
+        base = [p.name for p in self.compiled.parameters]
+        dp = np.zeros(len(base))
+        if self.names[index] in base:
+            dp[base.index(self.names[index])] = 1.0
+        derived = [d.name for d in self.compiled.derived]
+        p = self.vector(values)
+        for k, name in enumerate(self.names):
+            if name in derived:
+                j = derived.index(name)
+                place = base.index(self.compiled.derived[j].sets)
+                slope = 1.0 if k == index else 0.0
+                dp[place] = self.compiled.inverse_slope(j, p, float(values[k]), dp, slope)
+        return dp
+
+
+def assign(compiled: CompiledModel, values: Array, wanted: dict[str, float]) -> Array:
+    """Return base parameters in which `wanted`, base or derived, have the values given.
+
+    Raises
+    ------
+    ParameterError
+        If a name is unknown.
+    """
+    base = [p.name for p in compiled.parameters]
+    derived = [d.name for d in compiled.derived]
+    p = np.array(values, dtype=float)
+    for name in wanted:
+        find_parameter(name, [*base, *derived])
+        if name in base:
+            p[base.index(name)] = wanted[name]
+    for j, info in enumerate(compiled.derived):
+        if info.name in wanted:
+            p[base.index(info.sets)] = compiled.inverse(j, p, float(wanted[info.name]))
+    return p
+
+
+def check_values(compiled: CompiledModel, wanted: dict[str, float]) -> None:
+    """Refuse values that are unknown, not finite, contradictory or outside the model's validity.
+
+    Raises
+    ------
+    ParameterError
+        With the parameter's name, what is wrong and what is allowed.
+    """
+    table = {p.name: p for p in compiled.parameters} | {d.name: d for d in compiled.derived}
+    for name, value in wanted.items():
+        find_parameter(name, table)
+        low, high = table[name].valid
+        unit = f" {table[name].unit}" if table[name].unit else ""
+        if not np.isfinite(value):
+            msg = f"parameter '{name}' is {value}; give a finite number"
+            raise ParameterError(msg)
+        if not low < value < high:
+            msg = (
+                f"parameter '{name}' = {value:g}{unit} is outside the model's validity; "
+                f"choose it {_words(low, high)}"
+            )
+            raise ParameterError(msg)
+    for info in compiled.derived:
+        if info.name in wanted and info.sets in wanted:
+            msg = f"'{info.name}' sets '{info.sets}': give one of the two, not both"
+            raise ParameterError(msg)
+
+
+def _words(low: float, high: float) -> str:
+    if np.isinf(low):
+        return f"below {high:g}"
+    return f"above {low:g}" if np.isinf(high) else f"between {low:g} and {high:g}"
+
+
+def _target(compiled: CompiledModel, name: str) -> str:
+    sets = {d.name: d.sets for d in compiled.derived}
+    find_parameter(name, [*(p.name for p in compiled.parameters), *sets])
+    return sets.get(name, name)

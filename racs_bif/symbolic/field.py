@@ -1,0 +1,56 @@
+"""What every solver asks of a dynamical system: a vector field and its exact derivatives."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+"""Real array."""
+Vectors = NDArray[np.float64] | NDArray[np.complex128]
+"""Directions, which may be complex where they are eigenvectors."""
+
+
+class VectorField(ABC):
+    """An autonomous ordinary differential equation x' = f(x, p) with exact derivatives.
+
+    ``x`` has shape (n,), or (n, N) for N points at once; ``p`` is the full vector (np,) of base
+    parameters in the order of `parameters`. Directions ``u, v, w`` have shape (n,) or (n, k) and may
+    be complex; ``dp`` is a direction (np,) in parameter space.
+
+    Attributes
+    ----------
+    states : tuple of str
+        The n names of the states.
+    parameters : tuple of str
+        The names of the base parameters.
+    """
+
+    states: tuple[str, ...]
+    parameters: tuple[str, ...]
+
+    @abstractmethod
+    def f(self, x: Array, p: Array) -> Array:
+        """Return the right-hand side, shaped like `x`."""
+
+    @abstractmethod
+    def f_x(self, x: Array, p: Array) -> Array:
+        """Return the Jacobian, (n, n) for one point or (N, n, n) for N points."""
+
+    @abstractmethod
+    def f_p(self, x: Array, p: Array, dp: Array) -> Array:
+        """Return the derivative of f in the parameter direction `dp`, shaped like `x`."""
+
+    @abstractmethod
+    def f_xx(self, x: Array, p: Array, u: Vectors, v: Vectors) -> Vectors:
+        """Return the bilinear form B(u, v) at one point, shaped like the directions."""
+
+    @abstractmethod
+    def f_xxx(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:
+        """Return the trilinear form C(u, v, w) at one point, shaped like the directions."""
+
+    @abstractmethod
+    def f_xp(self, x: Array, p: Array, v: Vectors, dp: Array) -> Vectors:
+        """Return the derivative of f_x v in the parameter direction `dp` at one point."""

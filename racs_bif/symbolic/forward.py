@@ -1,0 +1,125 @@
+"""Forward-mode derivatives of straight-line programs, as further nodes of the same graph.
+
+Applied once this gives columns of Jacobians, applied k times with k sets of directions the
+multilinear forms of order k (A. Griewank and A. Walther, *Evaluating Derivatives*, SIAM 2008, ch. 3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Final
+
+from racs_bif.symbolic.graph import COMPARISONS, LOGIC, Graph
+
+
+def tangent(graph: Graph, outputs: Sequence[int], seeds: Mapping[int, int]) -> list[int]:
+    """Differentiate `outputs` in the direction given at input nodes.
+
+    Parameters
+    ----------
+    graph : Graph
+        The program; the derivative's nodes are added to it.
+    outputs : sequence of int
+        Nodes to differentiate.
+    seeds : mapping of int to int
+        Input node to the node of its direction; inputs left out do not move.
+
+    Returns
+    -------
+    list of int
+        The derivatives, the zero node where an output does not depend on the seeds.
+    """
+    dots: dict[int, int] = {}
+    for node in graph.reachable(outputs):
+        name, args, _ = graph.ops[node]
+        if name == "input":
+            dots[node] = seeds.get(node, graph.zero)
+        elif all(dots[a] == graph.zero for a in args) or (
+            name in COMPARISONS or name in LOGIC
+        ):
+            dots[node] = graph.zero
+        else:
+            dots[node] = _RULES[name](graph, node, args, [dots[a] for a in args])
+    return [dots[node] for node in outputs]
+
+
+Rule = Callable[[Graph, int, tuple[int, ...], list[int]], int]
+
+
+def _mul(g: Graph, _: int, args: tuple[int, ...], dots: list[int]) -> int:
+    return g.add(g.mul(args[0], dots[1]), g.mul(dots[0], args[1]))
+
+
+def _div(g: Graph, node: int, args: tuple[int, ...], dots: list[int]) -> int:
+    return g.div(g.sub(dots[0], g.mul(node, dots[1])), args[1])
+
+
+def _pow(g: Graph, node: int, args: tuple[int, ...], dots: list[int]) -> int:
+    a, b = args
+    result = g.zero
+    if dots[0] != g.zero:
+        slope = g.mul(b, g.power(a, g.sub(b, g.one)))
+        result = g.mul(slope, dots[0])
+    if dots[1] != g.zero:
+        result = g.add(result, g.mul(g.mul(node, g.unary("log", a)), dots[1]))
+    return result
+
+
+def _chain(slope: Callable[[Graph, int, int], int]) -> Rule:
+    """Make a rule from the derivative of a function of one argument (graph, node, argument)."""
+
+    def rule(g: Graph, node: int, args: tuple[int, ...], dots: list[int]) -> int:
+        return g.mul(slope(g, node, args[0]), dots[0])
+
+    return rule
+
+
+def _over(denominator: Callable[[Graph, int, int], int]) -> Rule:
+    """Make a rule for a function whose derivative is one over something."""
+
+    def rule(g: Graph, node: int, args: tuple[int, ...], dots: list[int]) -> int:
+        return g.div(dots[0], denominator(g, node, args[0]))
+
+    return rule
+
+
+def _square(g: Graph, a: int) -> int:
+    return g.mul(a, a)
+
+
+def _where(g: Graph, _: int, args: tuple[int, ...], dots: list[int]) -> int:
+    return g.where(args[0], dots[1], dots[2])
+
+
+def _gauss(g: Graph, _: int, a: int) -> int:
+    two_over_root_pi = g.constant(1.1283791670955126)
+    return g.mul(two_over_root_pi, g.unary("exp", g.neg(_square(g, a))))
+
+
+_RULES: Final[dict[str, Rule]] = {
+    "add": lambda g, _, __, d: g.add(d[0], d[1]),
+    "sub": lambda g, _, __, d: g.sub(d[0], d[1]),
+    "neg": lambda g, _, __, d: g.neg(d[0]),
+    "mul": _mul,
+    "div": _div,
+    "pow": _pow,
+    "where": _where,
+    "exp": _chain(lambda _, node, __: node),
+    "log": _over(lambda _, __, a: a),
+    "sqrt": _over(lambda g, node, _: g.mul(g.constant(2.0), node)),
+    "sin": _chain(lambda g, _, a: g.unary("cos", a)),
+    "cos": _chain(lambda g, _, a: g.neg(g.unary("sin", a))),
+    "tan": _chain(lambda g, node, _: g.add(g.one, _square(g, node))),
+    "asin": _over(lambda g, _, a: g.unary("sqrt", g.sub(g.one, _square(g, a)))),
+    "acos": _over(lambda g, _, a: g.neg(g.unary("sqrt", g.sub(g.one, _square(g, a))))),
+    "atan": _over(lambda g, _, a: g.add(g.one, _square(g, a))),
+    "sinh": _chain(lambda g, _, a: g.unary("cosh", a)),
+    "cosh": _chain(lambda g, _, a: g.unary("sinh", a)),
+    "tanh": _chain(lambda g, node, _: g.sub(g.one, _square(g, node))),
+    "asinh": _over(lambda g, _, a: g.unary("sqrt", g.add(_square(g, a), g.one))),
+    "acosh": _over(lambda g, _, a: g.unary("sqrt", g.sub(_square(g, a), g.one))),
+    "atanh": _over(lambda g, _, a: g.sub(g.one, _square(g, a))),
+    "erf": _chain(_gauss),
+    "fabs": _chain(lambda g, _, a: g.unary("sign", a)),
+    "sign": _chain(lambda g, _, __: g.zero),
+}

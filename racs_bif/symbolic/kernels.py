@@ -1,0 +1,132 @@
+"""Running emitted code: on floats for one point, on arrays for many."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from racs_bif.symbolic.graph import UNARY
+
+
+def _pow_float(a: float, b: float) -> float:
+    return math.pow(a, b)
+
+
+SCALAR: Final = SimpleNamespace(
+    **UNARY,
+    pow=_pow_float,
+    where=lambda condition, a, b: a if condition else b,
+    both=lambda a, b: a and b,
+    either=lambda a, b: a or b,
+    negated=lambda a: not a,
+)
+"""Elementary functions of floats."""
+
+
+def _array_erf(x: Any) -> Any:
+    from scipy.special import erf
+
+    return erf(x)
+
+
+_NUMPY_NAMES: Final = {
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "asinh": np.arcsinh,
+    "acosh": np.arccosh,
+    "atanh": np.arctanh,
+    "erf": _array_erf,
+}
+ARRAY: Final = SimpleNamespace(
+    **{name: _NUMPY_NAMES.get(name) or getattr(np, name) for name in UNARY},
+    pow=lambda a, b: np.power(np.asarray(a, dtype=float), b),
+    where=np.where,
+    both=np.logical_and,
+    either=np.logical_or,
+    negated=np.logical_not,
+)
+"""Elementary functions of arrays."""
+
+Functions = dict[str, Callable[..., Any]]
+
+
+def build(text: str, name: str) -> tuple[dict[str, Any], Functions, Functions]:
+    """Execute the text of a compiled module.
+
+    Returns
+    -------
+    (dict, dict, dict)
+        Its ``META``, its functions on floats and its functions on arrays.
+    """
+    namespace: dict[str, Any] = {}
+    exec(compile(text, f"<racs_bif {name}>", "exec"), namespace)  # noqa: S102 - our own text
+    make = namespace["make"]
+    return namespace["META"], make(SCALAR), make(ARRAY)
+
+
+class Kernel:
+    """One compiled function, with what depends on parameters only kept from call to call.
+
+    Parameters
+    ----------
+    name : str
+        Function name in the module.
+    scalar, array : dict
+        The functions of the module, on floats and on arrays.
+    """
+
+    def __init__(self, name: str, scalar: Functions, array: Functions) -> None:
+        self._scalar = scalar[name]
+        self._array = array[name]
+        self._prepare_scalar = scalar[f"{name}_prepare"]
+        self._prepare_array = array[f"{name}_prepare"]
+        self._key: bytes | None = None
+        self._constants: tuple[Any, ...] = ()
+
+    def __call__(self, p: NDArray[Any], *groups: NDArray[Any]) -> NDArray[Any]:
+        """Evaluate.
+
+        Parameters
+        ----------
+        p : array (np,) or (np, N)
+            Parameters.
+        *groups : arrays (k,) or (k, N)
+            The other arguments; N must be the same or left out.
+
+        Returns
+        -------
+        array (outputs,) or (outputs, N)
+            Not finite where the equations are not defined.
+        """
+        if p.ndim == 1 and all(g.ndim == 1 for g in groups):
+            try:
+                return np.array(
+                    self._scalar(self._prepared(p), *[g.tolist() for g in groups]), dtype=None
+                )
+            except (ArithmeticError, ValueError):
+                pass  # undefined on floats: arrays tell where, by NaN or infinity
+        return self._on_arrays(p, groups)
+
+    def _prepared(self, p: NDArray[Any]) -> tuple[Any, ...]:
+        key = p.tobytes()
+        if key != self._key:
+            self._constants = self._prepare_scalar(p.tolist())
+            self._key = key
+        return self._constants
+
+    def _on_arrays(self, p: NDArray[Any], groups: tuple[NDArray[Any], ...]) -> NDArray[Any]:
+        with np.errstate(all="ignore"):
+            results = self._array(self._prepare_array(p), *groups)
+        points = {a.shape[1] for a in (p, *groups) if a.ndim == 2}
+        shape = (len(results), *points)
+        kind = complex if any(np.iscomplexobj(g) for g in groups) else float
+        out = np.empty(shape, dtype=kind)
+        for k, row in enumerate(results):
+            out[k] = row
+        return out

@@ -1,0 +1,77 @@
+"""Reading a transfer law: a quotient of sums of powers of the Laplace variable."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from racs_bif.errors import ModelError
+from racs_bif.symbolic.model import LAPLACE
+
+if TYPE_CHECKING:
+    import sympy as sp
+
+
+@dataclass(frozen=True)
+class PowerSum:
+    """A sum of ``coefficient * s**exponent``, both in terms of parameters."""
+
+    coefficients: tuple[sp.Expr, ...]
+    exponents: tuple[sp.Expr, ...]
+
+
+def read_law(output: str, law: sp.Expr) -> tuple[PowerSum, PowerSum]:
+    """Split a law into numerator and denominator.
+
+    Parameters
+    ----------
+    output : str
+        Name of the element's output, for messages.
+    law : sympy expression
+        The law Z(s).
+
+    Returns
+    -------
+    (PowerSum, PowerSum)
+        Numerator and denominator.
+
+    Raises
+    ------
+    ModelError
+        If the law is not a quotient of sums of powers of s.
+    """
+    import sympy as sp
+
+    names = sorted({symbol.name for symbol in law.free_symbols} | {LAPLACE})
+    positive = {name: sp.Symbol(name, positive=True) for name in names}
+    plain = {symbol: positive[symbol.name] for symbol in law.free_symbols}
+    s = positive[LAPLACE]
+    numerator, denominator = sp.fraction(sp.together(law.subs(plain, simultaneous=True)))
+    back = {symbol: sp.Symbol(name) for name, symbol in positive.items()}
+    return (
+        _power_sum(output, law, numerator, s, back),
+        _power_sum(output, law, denominator, s, back),
+    )
+
+
+def _power_sum(
+    output: str, law: sp.Expr, expression: sp.Expr, s: sp.Symbol, back: dict[sp.Symbol, sp.Symbol]
+) -> PowerSum:
+    import sympy as sp
+
+    terms: dict[sp.Expr, sp.Expr] = {}
+    for term in sp.Add.make_args(sp.expand(sp.powdenest(expression, force=True))):
+        coefficient, rest = term.as_independent(s, as_Add=False)
+        rest = sp.powsimp(rest, combine="exp")
+        base, exponent = rest.as_base_exp() if rest != 1 else (s, sp.Integer(0))
+        if base != s or exponent.has(s):
+            msg = (
+                f"law of '{output}', {law}, is not a quotient of sums of powers of s; "
+                "write it as a sum of coefficients times s**order over another such sum"
+            )
+            raise ModelError(msg)
+        terms[exponent] = terms.get(exponent, sp.Integer(0)) + coefficient
+    ordered = sorted(terms, key=sp.default_sort_key)
+    return PowerSum(
+        tuple(terms[e].subs(back) for e in ordered), tuple(e.subs(back) for e in ordered)
+    )

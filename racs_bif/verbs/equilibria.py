@@ -1,0 +1,214 @@
+"""The branch of equilibria in one parameter, its special points checked on the exact model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from racs_bif.continuation.points import Point, Trace
+from racs_bif.continuation.points import SpecialPoint as RawPoint
+from racs_bif.continuation.settings import StepSettings
+from racs_bif.continuation.trace import trace
+from racs_bif.equilibria.branch_point import BranchPoint
+from racs_bif.equilibria.fold import Fold
+from racs_bif.equilibria.hopf import Hopf
+from racs_bif.equilibria.problem import EquilibriumProblem
+from racs_bif.errors import ConvergenceError, ParameterError, UsageError
+from racs_bif.fractional.exact_hopf import solve_hopf
+from racs_bif.fractional.system import System
+from racs_bif.numerics.threads import single_threaded
+from racs_bif.results.branch import Branch
+from racs_bif.results.provenance import describe
+from racs_bif.results.special import ExactPoint, SpecialPoint
+from racs_bif.shelf.load import system_of
+from racs_bif.symbolic.field import Array
+from racs_bif.symbolic.model import Model, find_parameter
+from racs_bif.verbs import assemble
+from racs_bif.verbs.origin import Origin
+
+
+@single_threaded
+def continue_equilibria(  # noqa: PLR0913 - each is one choice of the user's
+    model: Model | System,
+    parameter: str,
+    span: tuple[float, float],
+    *,
+    at: Sequence[float] = (),
+    settings: StepSettings | None = None,
+    progress: Callable[[Point], None] | None = None,
+) -> Branch:
+    """Follow the equilibrium near the model's guess as one parameter moves through a span.
+
+    Folds (LP), Hopf points (H) and branch points (BP) are located. Hopf points of a fractional model
+    are solved again on its exact characteristic function, and the shift is reported.
+
+    Parameters
+    ----------
+    model : Model or System
+        What is followed; `load_model` gives a system.
+    parameter : str
+        Active parameter, base or derived.
+    span : (float, float)
+        Its interval, SI.
+    at : sequence of float
+        Values at which points are wanted exactly; they are labelled UZ.
+    settings : StepSettings, optional
+        Step control.
+    progress : callable, optional
+        Called with every new point.
+
+    Returns
+    -------
+    Branch
+        Named EQ1, of kind ``equilibrium``.
+
+    Raises
+    ------
+    UsageError
+        If the span is empty.
+    ParameterError
+        If the parameter is unknown or the span leaves the model's validity.
+    ConvergenceError
+        If no equilibrium is found to start from.
+
+    Examples
+    --------
+    >>> import racs_bif as rb
+    >>> branch = rb.continue_equilibria(rb.load_model("racs"), "u", (5, 30))
+    >>> round(branch["H1"].exact.parameters["u"], 6), branch["H1"].criticality
+    (10.2, 'supercritical')
+    """
+    system = system_of(model)
+    low, high = check_span(system, parameter, span)
+    path = system.path(parameter)
+    problem = EquilibriumProblem(system.field, path, _outputs(system))
+    detectors = [Fold(), BranchPoint(), Hopf(len(system.states))]
+    found = trace(
+        problem,
+        _start(system, parameter, (low, high)),
+        (low, high),
+        detectors,
+        settings or StepSettings(),
+        targets=tuple(at),
+        progress=progress,
+    )
+    return _branch(system, problem, found, (low, high))
+
+
+def check_span(
+    system: System, parameter: str, span: tuple[float, float]
+) -> tuple[float, float]:
+    """Return the span as floats.
+
+    Raises
+    ------
+    UsageError
+        If it is empty or not finite.
+    ParameterError
+        If the parameter is unknown or the span leaves the model's validity.
+    """
+    find_parameter(parameter, [p.name for p in system.parameter_table])
+    low, high = float(span[0]), float(span[1])
+    if not (np.isfinite(low) and np.isfinite(high) and low < high):
+        msg = f"the span {low:g} to {high:g} is empty; give a finite LOW below HIGH"
+        raise UsageError(msg)
+    valid = next(p.valid for p in system.parameter_table if p.name == parameter)
+    if not (valid[0] < low and high < valid[1]):
+        msg = (
+            f"the span {low:g} to {high:g} of '{parameter}' leaves the model's validity, "
+            f"{valid[0]:g} < {parameter} < {valid[1]:g}; narrow the span"
+        )
+        raise ParameterError(msg)
+    return low, high
+
+
+def _outputs(system: System) -> Callable[[Array, Array], dict[str, float]]:
+    def outputs(x: Array, p: Array) -> dict[str, float]:
+        frame = system.field.frame(p)
+        values = system.compiled.output_values(system.field.core_point(x, p), frame.P)
+        return {name: float(value) for name, value in values.items()}
+
+    return outputs
+
+
+def _start(system: System, parameter: str, span: tuple[float, float]) -> Array:
+    """Return an equilibrium within the span: at the parameter's own value, an end or the middle."""
+    low, high = span
+    own = system.parameters[parameter]
+    places = [own] if low <= own <= high else []
+    places += [low, high, 0.5 * (low + high)]
+    path = system.path(parameter)
+    for k, value in enumerate(places):
+        try:
+            return np.append(system.equilibrium(path.vector(value)), value)
+        except ConvergenceError:
+            if k == len(places) - 1:
+                raise
+    raise AssertionError  # the loop returns or raises
+
+
+def _branch(
+    system: System, problem: EquilibriumProblem, found: Trace, span: tuple[float, float]
+) -> Branch:
+    sentence, early = assemble.stopped(found)
+    named = [(raw, _special(system, problem, raw, span)) for raw in found.special]
+    states = np.array([p.z[:-1] for p in found.points])
+    return Branch(
+        name="EQ1",
+        kind="equilibrium",
+        parameters=problem.path.names,
+        state_names=system.field.states,
+        states=states,
+        measures=assemble.measures(found.points),
+        special=tuple(point for _, point in named),
+        stopped=sentence,
+        early=early,
+        system=describe(system),
+        method="pseudo-arclength",
+        **assemble.columns(found.points),
+    )
+
+
+def _special(
+    system: System, problem: EquilibriumProblem, raw: RawPoint, span: tuple[float, float]
+) -> SpecialPoint:
+    data: dict[str, Any] = assemble.numbers(raw.data)
+    exact = None
+    if raw.label == "H" and system.fractional:
+        try:
+            exact = _exact_hopf(system, problem, raw)
+        except ConvergenceError as error:
+            data["refused"] = str(error)
+        law = system.field.frame(problem.path.vector(raw.z[-1]))
+        s = np.array([1j * raw.data["omega"]])
+        errors = [abs(f(s)[0] / z(s)[0] - 1.0) for f, z in zip(law.filters, law.laws, strict=True)]
+        data["realisation_error"] = float(max(errors))
+    names = system.field.states
+    return SpecialPoint(
+        label=raw.label,
+        name=raw.name,
+        branch="EQ1",
+        parameters={problem.parameter: raw.z[-1]},
+        state=dict(zip(names[: len(system.states)], raw.z[:-1], strict=False)),
+        data=data,
+        exact=exact,
+        index=raw.index,
+        origin=Origin(system, problem, raw, span),
+    )
+
+
+def _exact_hopf(system: System, problem: EquilibriumProblem, raw: RawPoint) -> ExactPoint:
+    value, omega = float(raw.z[-1]), float(raw.data["omega"])
+    X = system.exact_point(raw.z[:-1], problem.path.vector(value))
+    exact = solve_hopf(system.exact, problem.path, X, value, omega)
+    size = abs(exact.value) or 1.0
+    return ExactPoint(
+        parameters={problem.parameter: exact.value},
+        omega=exact.omega,
+        shift={
+            problem.parameter: (value - exact.value) / size,
+            "omega": (omega - exact.omega) / exact.omega,
+        },
+    )

@@ -1,0 +1,194 @@
+"""The branch of periodic orbits that is born at a Hopf point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from racs_bif.continuation.points import Point, Trace
+from racs_bif.continuation.points import SpecialPoint as RawPoint
+from racs_bif.continuation.settings import StepSettings
+from racs_bif.continuation.stopped import Stopped
+from racs_bif.continuation.trace import trace
+from racs_bif.equilibria.hopf_form import HopfForm
+from racs_bif.errors import UsageError, nearest
+from racs_bif.numerics.threads import single_threaded
+from racs_bif.orbits.cycles_fold import FoldOfCycles
+from racs_bif.orbits.neimark_sacker import NeimarkSacker
+from racs_bif.orbits.orbit import Orbit
+from racs_bif.orbits.period_doubling import PeriodDoubling
+from racs_bif.orbits.problem import OrbitProblem
+from racs_bif.orbits.settings import OrbitSettings
+from racs_bif.orbits.start import from_hopf
+from racs_bif.results.branch import Branch, Profile
+from racs_bif.results.provenance import describe
+from racs_bif.results.special import SpecialPoint
+from racs_bif.verbs import assemble
+from racs_bif.verbs.equilibria import check_span
+from racs_bif.verbs.origin import Origin
+
+METHODS = ("shooting",)
+"""Discretisations of periodic orbits."""
+_STEPS = StepSettings(maximum=0.05, tolerance=1e-8)
+
+
+@single_threaded
+def continue_orbits(  # noqa: PLR0913 - each is one choice of the user's
+    hopf: SpecialPoint,
+    span: tuple[float, float] | None = None,
+    *,
+    method: str = "shooting",
+    at: Sequence[float] = (),
+    settings: StepSettings | None = None,
+    orbit_settings: OrbitSettings | None = None,
+    progress: Callable[[Point], None] | None = None,
+) -> Branch:
+    """Follow the periodic orbits born at a Hopf point through a span of the parameter.
+
+    Folds of cycles (LPC), period doublings (PD) and Neimark-Sacker points (NS) are located.
+
+    Parameters
+    ----------
+    hopf : SpecialPoint
+        A Hopf point of a branch made in this process by `continue_equilibria`.
+    span : (float, float), optional
+        Interval of the parameter; that of the equilibria where left out.
+    method : str
+        ``shooting``: multiple shooting with the implicit Radau method.
+    at : sequence of float
+        Values of the parameter at which orbits are wanted exactly; they are labelled UZ.
+    settings : StepSettings, optional
+        Step control.
+    orbit_settings : OrbitSettings, optional
+        How orbits are resolved.
+    progress : callable, optional
+        Called with every new point.
+
+    Returns
+    -------
+    Branch
+        Named PO1, of kind ``orbit``; its first point is the Hopf point, an orbit of no amplitude.
+
+    Raises
+    ------
+    UsageError
+        If the point is no Hopf point or was loaded from a file, or the method is unknown.
+    """
+    if method not in METHODS:
+        msg = f"unknown method '{method}'; {nearest(method, METHODS)}"
+        raise UsageError(msg)
+    origin = hopf.origin
+    if hopf.label != "H":
+        msg = f"{hopf.name} is a {hopf.title}; periodic orbits start from Hopf points (H)"
+        raise UsageError(msg)
+    if not isinstance(origin, Origin):
+        msg = f"{hopf.name} was loaded from a file; continue the equilibria again to start from it"
+        raise UsageError(msg)
+    system, raw, path = origin.system, origin.raw, origin.problem.path
+    low, high = check_span(system, path.names[0], span or origin.span)
+    if not low <= raw.z[-1] <= high:
+        msg = f"{hopf.name} at {raw.z[-1]:g} is outside the span {low:g} to {high:g}; widen it"
+        raise UsageError(msg)
+    form: HopfForm = raw.data["form"]
+    start = from_hopf(
+        system.field, path, raw.z, form.omega, form.q, form=form, settings=orbit_settings
+    )
+    found = trace(
+        start.problem,
+        start.z,
+        (low, high),
+        [FoldOfCycles(), PeriodDoubling(), NeimarkSacker()],
+        settings or _STEPS,
+        tangent=start.tangent,
+        direction=1,
+        targets=tuple(at),
+        progress=progress,
+    )
+    return _branch(origin, start.problem, found, hopf)
+
+
+def _branch(origin: Origin, problem: OrbitProblem, found: Trace, hopf: SpecialPoint) -> Branch:
+    system = origin.system
+    sentence, early = assemble.stopped(found)
+    special = []
+    profiles = {}
+    for raw in [*found.special, *_ends(found)]:
+        orbit = problem.orbit(raw.z)
+        point = _special(origin, problem, raw, orbit)
+        special.append(point)
+        own = len(system.states)
+        profiles[point.name] = Profile(
+            times=orbit.times, names=system.states, states=orbit.profile[:own].T
+        )
+    return Branch(
+        name="PO1",
+        kind="orbit",
+        parameters=(hopf_parameter(origin),),
+        measures=_shown(system.states, assemble.measures(found.points)),
+        special=tuple(sorted(special, key=lambda point: point.index)),
+        stopped=sentence,
+        early=early,
+        system=describe(system),
+        method="shooting",
+        profiles=profiles,
+        **assemble.columns(found.points),
+    )
+
+
+def hopf_parameter(origin: Origin) -> str:
+    """Return the active parameter's name."""
+    return str(origin.problem.parameter)
+
+
+def _shown(own: tuple[str, ...], columns: dict[str, Any]) -> dict[str, Any]:
+    """Leave out the extremes of memory states."""
+    kept = {f"{end} {name}" for end in ("max", "min") for name in own}
+    return {
+        name: column
+        for name, column in columns.items()
+        if name in kept or not name.startswith(("max ", "min "))
+    }
+
+
+def _ends(found: Trace) -> list[RawPoint]:
+    """Return the last point as a special one, so that its orbit is kept."""
+    last = found.points[-1]
+    if last.label or len(found.points) < 2:
+        return []
+    label = "EP" if found.stopped.complete else "MX"
+    last.label = label if found.stopped is not Stopped.VANISHED else ""
+    raw = RawPoint(
+        label=label,
+        name=f"{label}1",
+        index=len(found.points) - 1,
+        z=last.z,
+        tangent=last.tangent,
+        spectrum=last.spectrum,
+        data={},
+        interval=0.0,
+    )
+    return [raw]
+
+
+def _special(
+    origin: Origin, problem: OrbitProblem, raw: RawPoint, orbit: Orbit
+) -> SpecialPoint:
+    own = origin.system.states
+    data: dict[str, Any] = {
+        "period": orbit.period,
+        "trivial_error": orbit.trivial_error,
+        "multipliers": np.asarray(orbit.multipliers),
+    }
+    data |= assemble.numbers(raw.data)
+    return SpecialPoint(
+        label=raw.label,
+        name=raw.name,
+        branch="PO1",
+        parameters={hopf_parameter(origin): raw.z[-1]},
+        state=dict(zip(own, orbit.profile[: len(own), 0], strict=True)),
+        data=data,
+        index=raw.index,
+        origin=Origin(origin.system, problem, raw, origin.span),
+    )

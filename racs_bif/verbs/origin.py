@@ -1,0 +1,39 @@
+"""What another branch needs to start at a special point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from racs_bif.continuation.points import SpecialPoint as RawPoint
+from racs_bif.continuation.problem import Problem
+from racs_bif.fractional.system import System
+from racs_bif.symbolic.field import Array
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a special point came from.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    problem : Problem
+        The problem whose branch it lies on.
+    raw : SpecialPoint
+        The engine's record of it.
+    span : (float, float)
+        Span of that branch.
+    """
+
+    system: System
+    problem: Problem
+    raw: RawPoint
+    span: tuple[float, float]
+
+    @property
+    def parameters(self) -> Array:
+        """Base parameters (np,) at the point."""
+        path = self.problem.path  # type: ignore[attr-defined] - every problem of ours has one
+        vector: Array = path.vector(self.raw.z[-1])
+        return vector
