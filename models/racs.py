@@ -452,5 +452,5 @@ def model(*, variant: str = "paper") -> Model:
         variant=variant,
         variants={name: row.summary for name, row in VARIANTS.items()},
         notes=(SIGNS, *NOTES),
-        band=(1.0, 60.0),  # roll, yaw and shimmy of a car: 0.2 to 10 Hz
+        band=(1.5, 50.0),  # yaw and shimmy of a car, 0.24 to 8 Hz
     )

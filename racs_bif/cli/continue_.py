@@ -85,6 +85,7 @@ class Run:
     branches: list[Branch] = field(default_factory=list)
     troubles: list[str] = field(default_factory=list)
     interrupted: bool = False
+    failure: Exception | None = None
 
 
 def run(arguments: Namespace) -> int:
@@ -98,7 +99,12 @@ def run(arguments: Namespace) -> int:
     _check_names(arguments, system)
 
     done = Run()
-    _compute(arguments, system, done)
+    try:
+        _compute(arguments, system, done)
+    except Exception as error:  # raised again when what is there has been saved
+        if not done.branches:
+            raise
+        done.failure = error
     if not done.branches:
         raise KeyboardInterrupt
 
@@ -109,7 +115,10 @@ def run(arguments: Namespace) -> int:
     with _uninterrupted():
         summary = _write(diagram, arguments)
     _tell(diagram, arguments, summary)
-    return _close(done, arguments)
+    status = _close(done, arguments)
+    if done.failure is not None:
+        raise done.failure
+    return status
 
 
 def _check_names(arguments: Namespace, system: System) -> None:

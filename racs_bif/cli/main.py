@@ -44,7 +44,8 @@ class _Version(argparse.Action):
         """Print the version and stop."""
         from racs_bif import __version__
 
-        parser.exit(message=f"racs-bif {__version__}\n")
+        print(f"racs-bif {__version__}")
+        parser.exit()
 
 
 def build_parser() -> tuple[Parser, dict[str, Parser]]:

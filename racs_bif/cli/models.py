@@ -125,7 +125,10 @@ def describe_model(system: System) -> dict[str, Any]:
 
 
 def _print_equations(meta: Mapping[str, Any], say: Callable[..., None]) -> None:
-    names = list(meta["equations"])
+    from racs_bif.cli.equations import named_equations
+
+    equations, outputs = named_equations(meta)
+    names = list(equations)
     say("\nStates", style="bold")
     for name in names:
         unit = f" [{meta['units'][name]}]" if meta["units"].get(name) else ""
@@ -133,14 +136,14 @@ def _print_equations(meta: Mapping[str, Any], say: Callable[..., None]) -> None:
     say("\nEquations", style="bold")
     rates = [f"{name}'" for name in names]
     if meta["mass"] is None:
-        for rate, right in zip(rates, meta["equations"].values(), strict=True):
+        for rate, right in zip(rates, equations.values(), strict=True):
             say(f"  {rate} = {right}")
     else:
-        for row, right in zip(meta["mass"], meta["equations"].values(), strict=True):
+        for row, right in zip(meta["mass"], equations.values(), strict=True):
             say(f"  {_left(row, rates)} = {right}")
     for element in meta["elements"]:
         say(f"  {element['output']} = Z(s) ({element['input']}),  Z(s) = {element['law']}")
-    for name, expression in meta["outputs"].items():
+    for name, expression in outputs.items():
         say(f"  {name} = {expression}")
 
 

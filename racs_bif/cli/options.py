@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from racs_bif.cli.parser import Parser, assignment, count, number
-from racs_bif.errors import UsageError
+from racs_bif.errors import UsageError, nearest
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -84,7 +84,7 @@ def open_system(arguments: Namespace) -> System:
     from racs_bif.shelf.load import load_model
 
     band = getattr(arguments, "band", None)
-    return load_model(
+    system = load_model(
         arguments.model,
         parameters=dict(arguments.values),
         variant=arguments.variant,
@@ -92,6 +92,13 @@ def open_system(arguments: Namespace) -> System:
         band=None if band is None else (band[0], band[1]),
         order=getattr(arguments, "sections", None) or 0,
     )
+    # A model's file may take any word for a variant; only those that it lists are meant.
+    variants = system.compiled.meta["variants"]
+    if arguments.variant is not None and arguments.variant not in variants:
+        hint = nearest(arguments.variant, variants)
+        msg = f"unknown variant '{arguments.variant}' of model '{system.name}'; {hint}"
+        raise UsageError(msg)
+    return system
 
 
 def check_span(low: float, high: float, values: Iterable[float] = ()) -> None:

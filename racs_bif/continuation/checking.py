@@ -32,10 +32,13 @@ class Verdict:
         Whether the step counts.
     factor : float
         By how much to change the step.
+    length : float
+        Scaled length of the chord.
     """
 
     accepted: bool
     factor: float
+    length: float
 
 
 def judge(
@@ -67,22 +70,21 @@ def judge(
     weights = scaling.weights
     before, after = tangents
     cosine = float(weights.dot(before * after))
-    if not cosine > 0.0:
-        return Verdict(accepted=False, factor=_SHORTER)
-    angle = math.acos(min(cosine, 1.0))
     chord = ends[1] - ends[0]
     length = scaling.norm(chord)
-    skew = 0.0
-    if length > 0.0:
-        mean = before + after
-        skew = scaling.norm(chord / length - mean / scaling.norm(mean))
+    if not cosine > 0.0 or length == 0.0:
+        return Verdict(accepted=False, factor=_SHORTER, length=length)
+    angle = math.acos(min(cosine, 1.0))
+    # Between unit vectors: 2 - 2 cos is the square of their distance.
+    along = float(weights.dot(chord * (before + after))) / (length * math.sqrt(2.0 + 2.0 * cosine))
+    skew = math.sqrt(max(2.0 - 2.0 * along, 0.0))
     iterations, contraction = newton
     ratio = max(
         angle / largest_angle, math.sqrt(skew / _SKEW), math.sqrt(contraction / CONTRACTION)
     )
     if ratio > 1.0:
-        return Verdict(accepted=False, factor=max(_SHORTER, _SAFETY / ratio))
+        return Verdict(accepted=False, factor=max(_SHORTER, _SAFETY / ratio), length=length)
     factor = _SAFETY / max(ratio, _SAFETY / _LONGER)
     if iterations > _USUAL_ITERATIONS:
         factor = min(factor, _USUAL_ITERATIONS / iterations)
-    return Verdict(accepted=True, factor=max(factor, _SHORTER))
+    return Verdict(accepted=True, factor=max(factor, _SHORTER), length=length)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,10 @@ _SAMPLES = (0.25, 0.5, 0.75)
 _SHALLOW = 0.5
 _REACH = 1e-3
 _ROUNDING = 4e-16
+
+
+Sample = tuple[float, float]
+"""Abscissa and value."""
 
 
 @dataclass(slots=True)
@@ -143,12 +148,7 @@ class Locator:
         label, parameter = self._builder.detectors[place].label, self._builder.problem.parameter
         self._notes.append(f"{label} {what} {parameter} = {point.parameter:.10g}")
 
-    def dip(
-        self,
-        segment: Segment,
-        place: int,
-        triples: list[tuple[tuple[float, float, float], tuple[float, float, float]]],
-    ) -> float | None:
+    def dip(self, segment: Segment, place: int, guess: float) -> float | None:
         """Return a place where a test function that has one sign at both ends has the other.
 
         Parameters
@@ -157,28 +157,21 @@ class Locator:
             Where to look.
         place : int
             Which detector.
-        triples : list
-            Places of three neighbouring points, in units of this segment, and the values there,
-            positive; the parabola through them says where a minimum may be.
+        guess : float
+            Where the function may be nearest to zero.
         """
-        for xs, ys in triples:
-            ends = tuple(y for x, y in zip(xs, ys, strict=True) if x in {0.0, 1.0})
-            guess, lowest = vertex(xs, ys)
-            if not (0.0 < guess < 1.0 and lowest <= _SHALLOW * min(ends)):
-                continue
-            sign = math.copysign(1.0, self._builder.value(place, segment.a))
+        before = self._builder.value(place, segment.a)
+        sign = math.copysign(1.0, before)
 
-            def test(at: float, low: float, high: float, sign: float = sign) -> tuple[float, float]:
-                at, point = segment.point(at, low, high)
-                return at, sign * self._builder.value(place, point)
+        def test(at: float, low: float, high: float) -> tuple[float, float]:
+            at, point = segment.point(at, low, high)
+            return at, sign * self._builder.value(place, point)
 
-            try:
-                found = dip(test, (0.0, 1.0, ends[0], ends[1]), guess)
-            except FAILURES:
-                continue
-            if found is not None:
-                return found
-        return None
+        after = sign * self._builder.value(place, segment.b)
+        try:
+            return dip(test, (0.0, 1.0, sign * before, after), guess)
+        except FAILURES:
+            return None
 
     def turn(self, segment: Segment) -> float | None:
         """Return the place at which the parameter turns back, by the cubic alone."""
@@ -192,6 +185,42 @@ class Locator:
 
         bracket = root(slope, (0.0, 1.0, before, after), 1e-9)
         return None if bracket is None or not 0.0 < bracket[0] < 1.0 else bracket[0]
+
+
+def lowest_between(ends: tuple[Sample, Sample], outer: Iterable[Sample]) -> float | None:
+    """Return where, between two samples of one sign, a function may dip through zero.
+
+    Parameters
+    ----------
+    ends : tuple
+        Abscissa and value at both ends.
+    outer : iterable
+        The samples beyond either end, as far as there are any.
+
+    Returns
+    -------
+    float or None
+        The vertex, as a share of the way between the ends, of a parabola through the ends and one
+        of the others; None unless it is much nearer to zero than the ends.
+    """
+    (start, before), (stop, after) = ends
+    width = stop - start
+    sign = math.copysign(1.0, before)
+    before, after = sign * before, sign * after
+    lowest = _SHALLOW * min(before, after)
+    for where, beyond in outer:
+        value = sign * beyond
+        if not value > 0.0 or width == 0.0:
+            continue
+        x = (where - start) / width
+        at, least = (
+            vertex((x, 0.0, 1.0), (value, before, after))
+            if x < 0.0
+            else vertex((0.0, 1.0, x), (before, after, value))
+        )
+        if 0.0 < at < 1.0 and least <= lowest:
+            return at
+    return None
 
 
 def _narrowest(seen: dict[float, float], before: float) -> Bracket:

@@ -132,26 +132,19 @@ class Detector(ABC):
     label: str
     crossings: int = 0
 
+    # Each detector has its own kind of problem: hence Any.
     @abstractmethod
-    def value(self, problem: Any, point: Point) -> float:
+    def value(self, problem: Any, point: Point) -> float:  # noqa: ANN401
         """Return the test function; a change of its sign along the branch is an event.
 
         NaN where it is not defined: that is never an event.
         """
 
     @abstractmethod
-    def data(
-        self,
-        problem: Any,
-        point: Point,
-    ) -> dict[str, Any] | None:
+    def data(self, problem: Any, point: Point) -> dict[str, Any] | None:  # noqa: ANN401
         """Return what is known about the special point; None if it is not of this kind."""
 
-    def refine(
-        self,
-        problem: Any,
-        special: SpecialPoint,
-    ) -> Array | None:
+    def refine(self, problem: Any, special: SpecialPoint) -> Array | None:  # noqa: ANN401
         """Return the special point (n+1,) polished on its own defining system, or None."""
         del problem, special
         return None

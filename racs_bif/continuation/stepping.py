@@ -211,14 +211,13 @@ class Stepper:
         if not verdict.accepted:
             self.step *= verdict.factor
             return None
-        length = scaling.norm(corrected.z - before.z)
         point = self._builder.point(
             corrected.z,
             tangent * self._sense,
-            before.arclength + self._sense * length,
+            before.arclength + self._sense * verdict.length,
             corrected.iterations,
         )
-        closed = self._closed(point, length)
+        closed = self._closed(point, verdict.length)
         self.step *= verdict.factor
         self._refreshed = False
         self._accepted += 1
@@ -252,7 +251,10 @@ class Stepper:
         before, start, scaling = self.point, self._start, self.scaling
         if self._accepted < _FIRST_CLOSABLE or len(start.z) != len(point.z):
             return None
-        if scaling.norm(start.z - point.z) > _STRETCH * length:
+        reach = _STRETCH * length
+        if abs(start.z[-1] - point.z[-1]) > reach * (self._high - self._low):
+            return None
+        if scaling.norm(start.z - point.z) > reach:
             return None
         chord = point.z - before.z
         share = float((scaling.weights * chord).dot(start.z - before.z)) / length**2

@@ -33,7 +33,7 @@ class _Walk:
     message: str
 
 
-def trace(
+def trace(  # noqa: PLR0913 - what a branch is made of
     problem: Problem,
     z: Array,
     span: tuple[float, float],
@@ -156,7 +156,7 @@ def _check_left(problem: Problem, walks: list[_Walk]) -> None:
 
 
 def _settle_start(walks: list[_Walk], builder: Builder) -> None:
-    """Decide about test functions that are zero at the start, by their signs on both sides of it."""
+    """Decide about test functions that are zero at the start, by their signs around it."""
     forward = walks[0].watch
     for place, detector in enumerate(builder.detectors):
         exact = builder.value(place, forward.nodes[0][0]) == 0.0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from racs_bif.continuation.building import FAILURES, Builder
 from racs_bif.continuation.counting import unexplained
-from racs_bif.continuation.locating import Event, Locator
+from racs_bif.continuation.locating import Event, Locator, lowest_between
 from racs_bif.continuation.points import Point, SpecialPoint
 from racs_bif.continuation.targets import ParameterTarget
 
@@ -90,6 +90,11 @@ class Watch:
         self._mismatches = 0
         self._values = builder.values(start)
         self._places = range(len(self._values))
+        self._wanted = [
+            place
+            for place in self._places
+            if isinstance(builder.detectors[place], ParameterTarget)
+        ]
         self._sizes = [abs(value) for value in self._values]
         self._pending: _Pending | None = None
         self._arrived: list[Point] = []
@@ -159,7 +164,13 @@ class Watch:
         """Look for events in a segment, now that the value after it is known, and append it."""
         before, after = list(last.before), list(last.after)
         for place in self._places:
-            self._cross(place, before, after, following[1][place] if following else math.nan)
+            value, beyond = after[place], following[1][place] if following else math.nan
+            size = max(_FADING * self._sizes[place], abs(value))
+            if self.signs[place] * value > _ZERO * size and not abs(beyond) * _ZERO >= abs(value):
+                # Nothing changes, as nearly everywhere.
+                self._sizes[place] = size
+            else:
+                self._cross(place, before, after, beyond)
         nodes = self._search(last, before, after, following)
         self.nodes.extend(nodes)
         self.nodes.append((last.b, None))
@@ -192,63 +203,55 @@ class Watch:
     ) -> list[Node]:
         """Return the events within a segment, split first where a function dips through zero."""
         a, b = last.a, last.b
-        segment = self._locator.segment(a, b)
         nodes: list[Node] = []
-        for at in self._splits(segment, last, (before, after), following):
-            middle = segment.known(at)
+        for middle in self._splits(last, (before, after), following):
             values = self._between(middle, before)
             nodes += self._resolve(a, middle, before, values)
             nodes.append((middle, None))
             a, before = middle, values
-        rest = segment if a is last.a else self._locator.segment(a, b)
-        return nodes + self._resolve(a, b, before, after, rest)
+        return nodes + self._resolve(a, b, before, after)
 
     def _splits(
         self,
-        segment: Segment,
         last: _Pending,
         values: tuple[list[float], list[float]],
         following: tuple[float, list[float]] | None,
-    ) -> list[float]:
-        """Return where a segment must be split for each sign change to be seen."""
-        before, after = values
-        length = last.b.arclength - last.a.arclength
-        found = []
-        for place in self._places:
-            if not before[place] * after[place] > 0.0:
-                continue
-            sign = math.copysign(1.0, before[place])
-            ends = ((0.0, sign * before[place]), (1.0, sign * after[place]))
-            triples = []
-            for other, first in ((last.earlier, True), (following, False)):
-                if other is None or length == 0.0 or not sign * other[1][place] > 0.0:
-                    continue
-                outer = ((other[0] - last.a.arclength) / length, sign * other[1][place])
-                x, y, z = (outer, *ends) if first else (*ends, outer)
-                triples.append(((x[0], y[0], z[0]), (x[1], y[1], z[1])))
-            at = self._locator.dip(segment, place, triples)
-            if at is not None:
-                found.append(at)
-        found += self._turned(segment, before, after)
-        return _apart(found)
-
-    def _turned(self, segment: Segment, before: list[float], after: list[float]) -> list[float]:
-        """Return where the parameter turns back beyond a value wanted."""
-        wanted = [
-            place
-            for place in self._places
-            if isinstance(self._builder.detectors[place], ParameterTarget)
-            and before[place] * after[place] > 0.0
-        ]
-        at = self._locator.turn(segment) if wanted else None
-        if at is None:
+    ) -> list[Point]:
+        """Return points at which a segment must be split for each sign change to be seen."""
+        a, b = last.a, last.b
+        dips = []
+        for place, before, after in zip(self._places, *values, strict=True):
+            if before * after > 0.0:
+                ends = ((a.arclength, before), (b.arclength, after))
+                outer = [(other[0], other[1][place]) for other in (last.earlier, following) if other]
+                guess = lowest_between(ends, outer)
+                if guess is not None:
+                    dips.append((place, guess))
+        turned = self._wanted and a.tangent[-1] * b.tangent[-1] < 0.0
+        if not (dips or turned):
             return []
+        segment = self._locator.segment(a, b)
+        found = [self._locator.dip(segment, place, guess) for place, guess in dips]
+        if turned:
+            found.append(self._turned(segment, *values))
+        return [segment.known(at) for at in _apart([at for at in found if at is not None])]
+
+    def _turned(
+        self, segment: Segment, before: list[float], after: list[float]
+    ) -> float | None:
+        """Return where the parameter turns back, if that is beyond a value wanted."""
+        at = self._locator.turn(segment)
+        if at is None:
+            return None
         try:
             at, point = segment.point(at)
         except FAILURES:
-            return []
-        passed = any(self._builder.value(place, point) * before[place] < 0.0 for place in wanted)
-        return [at] if passed else []
+            return None
+        for place in self._wanted:
+            value = self._builder.value(place, point)
+            if before[place] * after[place] > 0.0 and value * before[place] < 0.0:
+                return at
+        return None
 
     def _between(self, point: Point, before: list[float]) -> list[float]:
         """Return the values at a point put between two others, none of them exactly zero."""
@@ -265,13 +268,13 @@ class Watch:
         b: Point,
         before: list[float],
         after: list[float],
-        segment: Segment | None = None,
     ) -> list[Node]:
         """Return the events between two points, dividing until they explain the spectrum."""
-        segment = segment or self._locator.segment(a, b)
+        segment: Segment | None = None
         events: list[Event] = []
         for place in self._places:
             if before[place] * after[place] < 0.0:
+                segment = segment or self._locator.segment(a, b)
                 event = self._locator.locate(segment, place, before[place], after[place])
                 if event is not None:
                     events.append(event)
@@ -286,6 +289,7 @@ class Watch:
         if not reason:
             return nodes
         middle = None
+        segment = segment or self._locator.segment(a, b)
         if segment.length > _FLOOR:
             try:
                 middle = segment.point(0.5)[1]

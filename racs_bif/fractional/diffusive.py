@@ -10,13 +10,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import UsageError
 from racs_bif.fractional.filter import Filter, Realisation
-from racs_bif.fractional.laws import Complex, Law
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.laws import Complex, Law
+    from racs_bif.symbolic.field import Array
 
 _SAMPLES_PER_DECADE = 24
 
@@ -30,7 +33,7 @@ class Diffusive(Realisation):
     band : (float, float)
         Fitted frequencies [rad/s].
     order : int
-        Number of relaxation rates; 0 takes 4.5 a decade.
+        Number of relaxation rates; 0 takes five a decade.
     spread : float
         How far the rates reach beyond the band at either end, as a factor. With order 8 on 1 to 100
         rad/s, 6 gives the smallest error of the paper's law between 5 and 60 rad/s (6e-4).
@@ -44,7 +47,7 @@ class Diffusive(Realisation):
         super().__post_init__()
         if self.order == 0:
             decades = math.log10(self.band[1] / self.band[0])
-            object.__setattr__(self, "order", max(4, round(4.5 * decades)))
+            object.__setattr__(self, "order", max(4, math.ceil(5.0 * decades)))
         if self.order < 2:
             msg = f"order {self.order} is too small; use at least 2 relaxation rates"
             raise UsageError(msg)

@@ -8,13 +8,16 @@ poles, and roots that are exactly the characteristic roots.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.laws import Complex, Law
-from racs_bif.fractional.realised import RealisedField
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.laws import Complex, Law
+    from racs_bif.fractional.realised import RealisedField
+    from racs_bif.symbolic.field import Array
 
 _TOLERANCE = 1e-12
 

@@ -7,14 +7,17 @@ Delta(i omega); equations are equilibrium, ``Delta(i omega) q = 0`` and ``c* q =
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.exact import ExactModel
-from racs_bif.fractional.laws import Complex
-from racs_bif.symbolic.field import Array
-from racs_bif.symbolic.paths import ParameterPath
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.fractional.laws import Complex
+    from racs_bif.symbolic.field import Array
+    from racs_bif.symbolic.paths import ParameterPath
 
 _ITERATIONS = 25
 _TOLERANCE = 1e-12

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import UsageError
-from racs_bif.fractional.laws import Complex, Law
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.laws import Complex, Law
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True)

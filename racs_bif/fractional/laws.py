@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from racs_bif.errors import ParameterError
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array
 
 Complex = NDArray[np.complex128]
 

@@ -10,13 +10,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ParameterError, UsageError
 from racs_bif.fractional.filter import Filter, Realisation
-from racs_bif.fractional.laws import Law, PowerSum
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.laws import Law, PowerSum
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.fractional.filter import Filter, Realisation
 from racs_bif.fractional.laws import Law, read_direction, read_numbers
-from racs_bif.symbolic.compiled import CompiledModel
 from racs_bif.symbolic.field import Array, VectorField, Vectors
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.filter import Filter, Realisation
+    from racs_bif.symbolic.compiled import CompiledModel
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,10 +15,12 @@ from racs_bif.fractional.exact import ExactModel
 from racs_bif.fractional.filter import Realisation, RealisationInfo
 from racs_bif.fractional.oustaloup import Oustaloup
 from racs_bif.fractional.realised import RealisedField
-from racs_bif.symbolic.compiled import CompiledModel, DerivedInfo
 from racs_bif.symbolic.compiled_path import CompiledPath, assign, check_values
-from racs_bif.symbolic.field import Array
-from racs_bif.symbolic.model import Parameter
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.compiled import CompiledModel, DerivedInfo
+    from racs_bif.symbolic.field import Array
+    from racs_bif.symbolic.model import Parameter
 
 REALISATIONS: dict[str, type[Diffusive] | type[Oustaloup]] = {
     "diffusive": Diffusive,

@@ -46,7 +46,7 @@ def factorise(matrix: Array) -> Callable[[Array], Array]:
     dgetrf, dgetrs = _lapack()
     lu, pivots, info = dgetrf(matrix)
     diagonal = np.abs(lu.diagonal())
-    smallest, largest = float(diagonal.min()), float(diagonal.max())
+    smallest, largest = np.minimum.reduce(diagonal), np.maximum.reduce(diagonal)
     if info or not smallest > _SUSPICIOUS * largest:
         _check(matrix, diagonal, pivots)
 

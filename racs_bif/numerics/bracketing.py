@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect, insort
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -10,6 +11,7 @@ if TYPE_CHECKING:
 
 _MOST = 100
 _DIP_EVALUATIONS = 12
+_DIP_PATIENCE = 3
 _DIP_NOISE = 1e-13
 
 Bracket = tuple[float, float, float, float]
@@ -80,16 +82,17 @@ def vertex(xs: tuple[float, float, float], ys: tuple[float, float, float]) -> tu
     >>> vertex((0.0, 1.0, 3.0), (5.0, 2.0, 2.0))
     (2.0, 1.0)
     """
-    left, right = xs[1] - xs[0], xs[2] - xs[1]
+    (x, y, z), (fx, fy, fz) = xs, ys
+    left, right = y - x, z - y
     if left <= 0.0 or right <= 0.0:
         return math.nan, math.nan
-    slope_left, slope_right = (ys[1] - ys[0]) / left, (ys[2] - ys[1]) / right
-    curvature = (slope_right - slope_left) / (left + right)
-    if not curvature > 0.0:
+    slope_left, slope_right = (fy - fx) / left, (fz - fy) / right
+    bend = slope_right - slope_left
+    if not bend > 0.0:
         return math.nan, math.nan
-    slope = (slope_left * right + slope_right * left) / (left + right)
-    offset = -0.5 * slope / curvature
-    return xs[1] + offset, ys[1] + 0.5 * slope * offset
+    slope = slope_left * right + slope_right * left
+    offset = -0.5 * slope / bend
+    return y + offset, fy + 0.5 * slope * offset / (left + right)
 
 
 def dip(
@@ -115,27 +118,24 @@ def dip(
     """
     a, b, fa, fb = bracket
     noise = _DIP_NOISE * max(fa, fb)
-    margin = 1e-3 * (b - a)
-    x, fx = function(min(max(guess, a + margin), b - margin), a, b)
-    for _ in range(_DIP_EVALUATIONS):
-        if fx < -noise:
-            return x
-        # Beyond the lower end, or too near to zero to tell.
-        if not min(fa, fb) >= fx > noise:
-            break
-        trial, lowest = vertex((a, x, b), (fa, fx, fb))
-        if not lowest < 0.9 * fx:
-            break
-        apart = 1e-3 * min(x - a, b - x)
-        if abs(trial - x) < apart:
-            trial = x + math.copysign(apart, (b - x) - (x - a))
-        trial, value = function(trial, a, b)
-        if not math.isfinite(value):
-            break
-        if value < fx:
-            trial, x, value, fx = x, trial, fx, value
-        if trial < x:
-            a, fa = trial, value
-        else:
-            b, fb = trial, value
+    seen = [(a, fa), (b, fb)]
+    trial = guess
+    for evaluation in range(_DIP_EVALUATIONS):
+        place = bisect(seen, (trial, -math.inf))
+        low, high = seen[place - 1][0], seen[place][0]
+        apart = 1e-3 * (high - low)
+        trial, value = function(min(max(trial, low + apart), high - apart), low, high)
+        if value < -noise:
+            return trial
+        if not value > noise:
+            # NaN, or too near to zero to tell.
+            return None
+        insort(seen, (trial, value))
+        lowest = min(range(len(seen)), key=lambda i: seen[i][1])
+        middle = min(max(lowest, 1), len(seen) - 2)
+        (x, fx), (y, fy), (z, fz) = seen[middle - 1 : middle + 2]
+        trial, least = vertex((x, y, z), (fx, fy, fz))
+        hopeless = evaluation >= _DIP_PATIENCE and not least < 0.9 * seen[lowest][1]
+        if hopeless or not a < trial < b:
+            return None
     return None

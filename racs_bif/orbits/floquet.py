@@ -70,19 +70,20 @@ def floquet(transitions: Array, velocity: Array | None = None, scales: Array | N
     values[~np.isfinite(values)] = np.inf
     trivial = _trivial(values, vectors, None if velocity is None else velocity / scale)
     rest = np.delete(values, trivial)
-    # conjugates share their modulus up to rounding: sort by it rounded, then by the imaginary part
-    order = np.lexsort((-rest.imag, -rest.real, -_rounded(np.abs(rest))))
+    # conjugates share modulus and real part up to rounding: sort by those rounded
+    modulus = np.abs(rest)
+    order = np.lexsort((-rest.imag, -_rounded(rest.real, modulus), -_rounded(modulus, modulus)))
     ordered = np.concatenate((values[[trivial]], rest[order]))
     return Floquet(ordered, float(abs(ordered[0] - 1.0)))
 
 
-def _rounded(moduli: Array) -> Array:
-    """Round to 10 digits, so that a conjugate pair sorts as one."""
+def _rounded(values: Array, sizes: Array) -> Array:
+    """Round to ten digits of the sizes, so that a conjugate pair sorts as one."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        digits = np.floor(np.log10(moduli))
+        digits = np.floor(np.log10(sizes))
         unit = 10.0 ** (np.where(np.isfinite(digits), digits, 0.0) - 9.0)
-        rounded = np.round(moduli / unit) * unit
-    return np.where(np.isfinite(rounded), rounded, moduli)
+        rounded = np.round(values / unit) * unit
+    return np.where(np.isfinite(rounded), rounded, values)
 
 
 def _trivial(values: Multipliers, vectors: NDArray[np.complex128], velocity: Array | None) -> int:

@@ -16,7 +16,7 @@ import numpy as np
 from racs_bif.errors import ConvergenceError, ModelError, RacsBifError
 from racs_bif.orbits.dense import Profile
 from racs_bif.orbits.mesh import Mesh
-from racs_bif.orbits.radau import ABSCISSAE, STAGES, StageFactors, defects
+from racs_bif.orbits.radau import ABSCISSAE, STAGES, StageFactors, defects, slopes_of
 from racs_bif.symbolic.field import Array, VectorField
 from racs_bif.symbolic.paths import ParameterPath
 
@@ -261,7 +261,7 @@ class Integrator:
             stages = stages + step
             change = np.abs(step) / (np.abs(stages).max(axis=(0, 1)) + self.floor)
             if chord.judge(float(change.max())):
-                return stages, self._rates(stages, p, times)
+                return stages, slopes_of(_origins(column, starts, stages), stages, tau)
             if chord.failed:
                 break
         worst = int(np.argmax(change.max(axis=(1, 2))))

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from racs_bif.symbolic.field import Array
+from racs_bif.orbits.remesh import halved
+
+if TYPE_CHECKING:
+    from racs_bif.orbits.shooting import ShootingProblem
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +76,33 @@ class Refinement:
     period: float
     extremes: Array
     multiplier: float
+
+
+def refined(problem: ShootingProblem, z: Array) -> Refinement:
+    """Solve for an orbit again on a mesh of twice as many steps, at the same parameter.
+
+    Parameters
+    ----------
+    problem : ShootingProblem
+        The problem that the orbit is a solution of.
+    z : array (M n + 3,)
+        The orbit.
+
+    Returns
+    -------
+    Refinement
+        The finer orbit, and how far the coarser one is from it.
+
+    Raises
+    ------
+    ConvergenceError
+        If the orbit is not found on the finer mesh.
+    """
+    coarse = problem.orbit(z)
+    hold = np.zeros(len(z))
+    hold[-1] = 1.0
+    finer, _ = problem.on_mesh(z, hold, halved(problem.reference(z).mesh))
+    return compare(coarse, problem.orbit(finer))
 
 
 def compare(coarse: Orbit, fine: Orbit) -> Refinement:

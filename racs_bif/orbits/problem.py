@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from racs_bif.continuation.problem import Problem
 
 if TYPE_CHECKING:
+    from racs_bif.continuation.points import Point
     from racs_bif.orbits.floquet import Floquet
     from racs_bif.orbits.orbit import Orbit
     from racs_bif.symbolic.field import Array
@@ -44,7 +45,9 @@ class OrbitProblem(Problem):
         """Return the orbit as a result, sampled at equal times over one period."""
 
     def spectrum(self, z: Array) -> NDArray[np.complex128]:
-        """Return the multipliers (n,), the trivial one first."""
+        """Return the multipliers (n,), the trivial one first; none of what is no proper orbit."""
+        if self.degenerate(z):
+            return np.empty(0, dtype=complex)
         return self.floquet(z).multipliers
 
     def unstable(self, spectrum: NDArray[np.complex128]) -> int:
@@ -56,3 +59,12 @@ class OrbitProblem(Problem):
         outside = np.asarray(np.abs(spectrum) > 1.0)
         outside[:1] = False
         return outside
+
+
+def describe(problem: OrbitProblem, point: Point) -> dict[str, Any]:
+    """Return what every special point of cycles reports: period, multipliers, trivial error."""
+    return {
+        "period": problem.period(point.z),
+        "multipliers": point.spectrum,
+        "trivial_error": float(abs(point.spectrum[0] - 1.0)),
+    }

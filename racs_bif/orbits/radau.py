@@ -83,12 +83,14 @@ class StageFactors:
             Changes of the stages.
         """
         b = INVERSE
+        solution = np.empty_like(rhs)
         first = self._e1 @ rhs[:, 0]
         second = self._e2 @ (rhs[:, 1] - b[1, 0] * first)
         third = self._e3 @ (rhs[:, 2] - b[2, 0] * first - self._s32 @ second)
         second -= self._g @ third
-        first -= self._e1 @ (b[0, 1] * second + b[0, 2] * third)
-        return np.stack((first, second, third), axis=1)
+        solution[:, 0] = first - self._e1 @ (b[0, 1] * second + b[0, 2] * third)
+        solution[:, 1], solution[:, 2] = second, third
+        return solution
 
     def sensitivities(self, *columns: Array) -> Array:
         """Solve for the derivatives of the stages.
@@ -125,3 +127,11 @@ def defects(origins: Array, stages: Array, slopes: Array, tau: Array) -> Array:
         Lengths of the steps in time.
     """
     return tau[:, None, None] * slopes - INVERSE @ (stages - origins[:, None, :])
+
+
+def slopes_of(origins: Array, stages: Array, tau: Array) -> Array:
+    """Return f(Y) at stages (N, 3, n) that solve the stage equations, without evaluating f.
+
+    Stiff components are not amplified as they are in f(Y).
+    """
+    return np.asarray((INVERSE @ (stages - origins[:, None, :])) / tau[:, None, None])

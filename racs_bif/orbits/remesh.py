@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -22,26 +21,6 @@ _SPARE: Final = 1.25
 """How many more steps are taken than the tolerance asks for, and how much of them lies evenly."""
 _TOO_MANY: Final = 2.0
 """Steps are given back when there are so many times more than needed."""
-
-
-@dataclass(frozen=True, eq=False)
-class Moved:
-    """An orbit and a tangent on another mesh.
-
-    Attributes
-    ----------
-    mesh : Mesh
-        The new mesh.
-    stages : array (N, 3, n)
-        The orbit at the Radau points of the new mesh.
-    z, tangent : array (M n + 2,)
-        Unknowns and tangent on it, to the accuracy of the dense output.
-    """
-
-    mesh: Mesh
-    stages: Array
-    z: Array
-    tangent: Array
 
 
 def better_mesh(
@@ -96,18 +75,33 @@ def _segments(
     return segments
 
 
-def moved(flow: Flow, derivative: Derivative, tangent: Array, mesh: Mesh) -> Moved:
-    """Interpolate an orbit and a tangent (M n + 2,) on another mesh."""
-    size = flow.origins.shape[1]
-    by_start = tangent[:-2].reshape(-1, size)
-    changes = Profile(
-        flow.mesh, *derivative.changes(by_start, float(tangent[-2]), float(tangent[-1]))
-    )
-    profile = flow.profile
-    starts, directions = profile(mesh.starts), changes(mesh.starts)
-    return Moved(
-        mesh=mesh,
-        stages=profile(mesh.times(ABSCISSAE)),
-        z=np.concatenate((starts.ravel(), (flow.period, flow.active))),
-        tangent=np.concatenate((directions.ravel(), tangent[-2:])),
-    )
+def interpolated(
+    flow: Flow, change: tuple[Array, Array], mesh: Mesh
+) -> tuple[Array, Array, Array]:
+    """Interpolate an orbit and a change of it on another mesh, to the order of the dense output.
+
+    Parameters
+    ----------
+    flow : Flow
+        The orbit.
+    change : tuple of array (N, n) and (N, 3, n)
+        The change at the starts of the steps and at the stages.
+    mesh : Mesh
+        The other mesh.
+
+    Returns
+    -------
+    stages : array (N', 3, n)
+        The orbit at the Radau points.
+    starts, directions : array (M', n)
+        The orbit and the change where the segments start.
+    """
+    profile, changes = flow.profile, Profile(flow.mesh, *change)
+    return profile(mesh.times(ABSCISSAE)), profile(mesh.starts), changes(mesh.starts)
+
+
+def halved(mesh: Mesh) -> Mesh:
+    """Return the mesh with every step halved."""
+    nodes = mesh.nodes
+    middles = 0.5 * (nodes[1:] + nodes[:-1])
+    return Mesh(np.insert(nodes, np.arange(1, len(nodes)), middles), mesh.segments)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
@@ -13,16 +13,17 @@ from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.orbits.condense import BorderedRing, Ring
 from racs_bif.orbits.floquet import Floquet, floquet
 from racs_bif.orbits.flow import Derivative, Flow, Integrator
-from racs_bif.orbits.mesh import Mesh
-from racs_bif.orbits.orbit import Orbit, Refinement, compare
+from racs_bif.orbits.generations import Generations
+from racs_bif.orbits.orbit import Orbit
 from racs_bif.orbits.problem import OrbitProblem
 from racs_bif.orbits.reference import Reference
-from racs_bif.orbits.remesh import better_mesh, moved
+from racs_bif.orbits.remesh import better_mesh, interpolated
 from racs_bif.orbits.settings import OrbitSettings
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Point
     from racs_bif.continuation.problem import Solver
+    from racs_bif.orbits.mesh import Mesh
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
 
@@ -30,15 +31,19 @@ _SAME: Final = 1e-9
 """Relative distance below which the derivative of the flow is taken over."""
 _POLISHING: Final = 6
 """Newton iterations on a new mesh."""
+_DENSE: Final = 128
+"""Unknowns up to which a dense LU factorisation is faster than condensation (measured)."""
+_TAIL: Final = 3
+"""Unknowns after the states: period, number of the reference, parameter."""
 
 
 @dataclass(eq=False)
 class _Solution:
-    """The flow at one z, and what is derived from it when it is asked for."""
+    """The flow at one z, and its derivative when it is asked for."""
 
     z: Array
     flow: Flow
-    integrator: Integrator = field(repr=False)
+    integrator: Integrator
 
     @cached_property
     def derivative(self) -> Derivative:
@@ -48,13 +53,15 @@ class _Solution:
 class ShootingProblem(OrbitProblem):
     """Periodic orbits x' = f(x, p) by shooting over the segments of a mesh.
 
-    The unknowns are z = (X_1, ..., X_M, T, lambda): the starts of the M segments, the period and the
-    active parameter. The equations are Phi_m(X_m, T, lambda) = X_(m+1) on the ring, divided by the
-    scales of the states, and the integral phase condition against the orbit accepted last. The flow
-    Phi is that of the Radau IIA method, differentiated exactly.
+    The unknowns are z = (X_1, ..., X_M, T, g, lambda): the starts of the M segments, the period, the
+    number of the mesh and phase condition in use, and the active parameter. The equations are
+    Phi_m(X_m, T, lambda) = X_(m+1) on the ring, divided by the scales of the states, the integral phase
+    condition against the orbit accepted before, and g = its number. The flow Phi is that of the
+    Radau IIA method, differentiated exactly.
 
-    A point that was accepted brings back the mesh and the phase condition that it was found with
-    when it is given again, so that profiles can be drawn and branches gone back to at any time.
+    The number g never changes while an orbit is solved for; `adapt` gives every accepted orbit a new
+    one. A solution thus knows the equations that it solves, whatever the mesh has become since:
+    events between earlier points can be located and profiles drawn at any time.
 
     Parameters
     ----------
@@ -80,25 +87,45 @@ class ShootingProblem(OrbitProblem):
         self.field = field
         self.path = path
         self.settings = settings or OrbitSettings()
-        self.reference = reference
-        self.integrator = Integrator(field, path, 1e-6 * reference.scales)
+        self.integrator = Integrator(field, path)
+        self.generations = Generations(self.integrator, reference)
         self._size = len(field.states)
         self._solution: _Solution | None = None
         self._base: _Solution | None = None
         self._floquet: tuple[Array, Floquet] | None = None
-        self._known: dict[bytes, Reference] = {}
-        self._first_period = 0.0
+        self._first_period: float | None = None
+
+    # ------------------------------------------------------------------ the unknowns
+
+    def join(self, starts: Array, period: float, active: float, number: int = 0) -> Array:
+        """Return z from starts (M, n), period, parameter and number of the reference."""
+        return np.concatenate((starts.ravel(), (period, float(number), active)))
+
+    def starts(self, z: Array) -> Array:
+        """Return the starts of the segments (M, n)."""
+        return z[:-_TAIL].reshape(-1, self._size)
+
+    def period(self, z: Array) -> float:
+        """Return the period, in units of time."""
+        return float(z[-3])
+
+    def reference(self, z: Array) -> Reference:
+        """Return the mesh and phase condition that `z` belongs to.
+
+        Raises
+        ------
+        UsageError
+            If it belongs to none of this problem's.
+        """
+        reference = self.generations[z[-2]]
+        if len(z) != reference.mesh.segments * self._size + _TAIL:
+            raise UsageError(
+                f"{len(z)} unknowns do not fit {reference.mesh.segments} segments of {self._size} "
+                "states: take a point of this problem's own branch"
+            )
+        return reference
 
     # ------------------------------------------------------------------ the equations
-
-    @property
-    def mesh(self) -> Mesh:
-        """The mesh in use."""
-        return self.reference.mesh
-
-    def split(self, z: Array) -> tuple[Array, float, float]:
-        """Return starts of the segments (M, n), period and parameter."""
-        return z[:-2].reshape(-1, self._size), float(z[-2]), float(z[-1])
 
     def flow(self, z: Array) -> Flow:
         """Return the flow over all segments at `z`.
@@ -107,58 +134,69 @@ class ShootingProblem(OrbitProblem):
         ------
         ConvergenceError
             If the integration fails.
-        UsageError
-            If `z` belongs to another mesh and was never accepted here.
         """
         return self._at(z).flow
 
     def residual(self, z: Array) -> Array:
-        """Return the gaps between the segments, (M n,), and the phase."""
-        flow = self._at(z).flow
-        gaps = (flow.ends - np.roll(flow.starts, -1, axis=0)) / self.reference.scales
-        return np.append(gaps.ravel(), self.reference.phase(flow.stages))
+        """Return the gaps between the segments (M n), the phase, and the number's distance."""
+        flow, reference = self._at(z).flow, self.reference(z)
+        gaps = (flow.ends - np.roll(flow.starts, -1, axis=0)) / reference.scales
+        number = z[-2] - np.round(z[-2])
+        return np.concatenate((gaps.ravel(), (reference.phase(flow.stages), number)))
 
     def jacobian(self, z: Array) -> Array:
-        """Return the exact derivative (M n + 1, M n + 2) of the residual."""
+        """Return the exact derivative (M n + 2, M n + 3) of the residual."""
         ends, phase = self._blocks(z)
+        scales = self.reference(z).scales
         count, size = len(ends), self._size
-        scaled = ends / self.reference.scales[:, None]
-        jacobian = np.zeros((count * size + 1, count * size + 2))
-        following = np.diag(1.0 / self.reference.scales)
+        scaled = ends / scales[:, None]
+        jacobian = np.zeros((count * size + 2, count * size + 3))
         for m in range(count):
-            rows, own, after = (slice(k * size, (k + 1) * size) for k in (m, m, (m + 1) % count))
-            jacobian[rows, own] += scaled[m, :, :size]
-            jacobian[rows, after] -= following
-            jacobian[rows, -2:] = scaled[m, :, size:]
-        jacobian[-1] = phase
+            own = slice(m * size, (m + 1) * size)
+            jacobian[own, own] = scaled[m, :, :size]
+        every = np.arange(count * size)
+        jacobian[every, np.roll(every, -size)] -= np.tile(1.0 / scales, count)
+        jacobian[every, -3] = scaled[:, :, size].ravel()
+        jacobian[every, -1] = scaled[:, :, size + 1].ravel()
+        jacobian[-2, :-2], jacobian[-2, -1] = phase[:-1], phase[-1]
+        jacobian[-1, -2] = 1.0
         return jacobian
 
     def bordered(self, z: Array, row: Array) -> Solver:
-        """Return a solver of [jacobian; row] that condenses the ring of segments orthogonally."""
+        """Return a solver of [jacobian; row].
+
+        Small matrices are factorised densely; large ones have their ring of segments condensed by
+        orthogonal transformations.
+        """
+        if len(z) <= _DENSE:
+            return super().bordered(z, row)
         ends, phase = self._blocks(z)
-        count, size, scales = len(ends), self._size, self.reference.scales
+        scales = self.reference(z).scales
+        count, size = len(ends), self._size
         scaled = ends / scales[:, None]
         transitions = scaled[:, :, :size] * scales
-        rows = np.stack((phase, row))
+        rows = np.stack((phase, np.delete(row, -2)))
         borders = rows[:, :-2].reshape(2, count, size) * scales
         ring = Ring(transitions, np.broadcast_to(-np.eye(size), transitions.shape))
         solver = BorderedRing(ring, scaled[:, :, size:], borders, rows[:, -2:])
 
         def solve(rhs: Array) -> Array:
             matrix = rhs.reshape(len(rhs), -1)
-            width = matrix.shape[1]
-            points, unknowns = solver.solve(matrix[:-2].reshape(count, size, width), matrix[-2:])
-            points *= scales[:, None]
-            return np.concatenate((points.reshape(-1, width), unknowns)).reshape(rhs.shape)
+            width, number = matrix.shape[1], matrix[-2]
+            border = np.stack((matrix[-3], matrix[-1] - row[-2] * number))
+            points, unknowns = solver.solve(matrix[:-_TAIL].reshape(count, size, width), border)
+            states = (points * scales[:, None]).reshape(-1, width)
+            solution = np.concatenate((states, unknowns[:1], number[None], unknowns[1:]))
+            return solution.reshape(rhs.shape)
 
         return solve
 
     def _blocks(self, z: Array) -> tuple[Array, Array]:
         """Return the derivatives of the ends (M, n, n + 2) and of the phase (M n + 2,)."""
-        derivative = self._near(z)[1]
-        size, mesh = self._size, self.mesh
+        flow, derivative = self._near(z)
+        size, mesh = self._size, flow.mesh
         # phase: weights times stages, which depend on the start of the step and so on the segment's
-        per_step = np.einsum("kia,kiab->kb", self.reference.weights, derivative.steps)
+        per_step = np.einsum("kia,kiab->kb", self.reference(z).weights, derivative.steps)
         per_segment = (per_step[:, None, :size] @ derivative.heads)[:, 0]
         per_segment[:, size:] += per_step[:, size:]
         summed = per_segment.reshape(mesh.segments, mesh.per_segment, -1).sum(axis=1)
@@ -167,75 +205,57 @@ class ShootingProblem(OrbitProblem):
 
     def _at(self, z: Array) -> _Solution:
         """Solve the flow at `z`, from the last solution moved along its derivative."""
-        if self._solution is not None and np.array_equal(self._solution.z, z):
-            return self._solution
-        self._recall(z)
-        starts, period, active = self.split(z)
+        reference = self.reference(z)
+        if self._solution is not None and self._solution.flow.mesh is reference.mesh:
+            known = self._solution.z
+            if np.array_equal(known[:-2], z[:-2]) and known[-1] == z[-1]:
+                return self._solution
+        starts, period, active = self.starts(z), self.period(z), float(z[-1])
         base = self._base
-        if base is None or base.flow.mesh is not self.mesh:
-            stages, factors = self.reference.stages, None
+        if base is None or base.flow.mesh is not reference.mesh:
+            stages, factors = reference.stages, None
         else:
             flow, derivative = base.flow, base.derivative
-            moved = (starts - flow.starts, period - flow.period, active - flow.active)
-            stages, factors = flow.stages + derivative.changes(*moved)[1], derivative.factors
-        flow = self.integrator.flow(self.mesh, starts, period, active, stages, factors)
+            change = (starts - flow.starts, period - flow.period, active - flow.active)
+            stages, factors = flow.stages + derivative.changes(*change)[1], derivative.factors
+        self.integrator.floor = 1e-6 * reference.scales
+        flow = self.integrator.flow(reference.mesh, starts, period, active, stages, factors)
         self._solution = _Solution(np.array(z), flow, self.integrator)
         return self._solution
 
     def _near(self, z: Array) -> tuple[Flow, Derivative]:
         """Return flow and derivative at `z`, or where they are known within rounding of it."""
         base = self._base
-        if base is not None and base.z.shape == z.shape and base.flow.mesh is self.mesh:
-            scales = np.append(self.scales(z), max(1.0, abs(z[-1])))
-            if float(np.abs((z - base.z) / scales).max()) < _SAME:
+        if base is not None and base.flow.mesh is self.reference(z).mesh:
+            distance = np.abs(z - base.z) / self._magnitudes(z)
+            distance[-2] = 0.0
+            if float(distance.max()) < _SAME:
                 return base.flow, base.derivative
         self._base = self._at(z)
         return self._base.flow, self._base.derivative
 
-    def _recall(self, z: Array) -> None:
-        """Return to the mesh that `z` was accepted on; refuse a z of another mesh."""
-        known = self._known.get(z.tobytes())
-        if known is not None and known.mesh is not self.mesh:
-            self.use(known)
-        if len(z) != self.mesh.segments * self._size + 2:
-            raise UsageError(
-                f"an orbit of {len(z)} unknowns does not fit {self.mesh.segments} segments of "
-                f"{self._size} states: take a point of this problem's own branch"
-            )
-
-    def use(self, reference: Reference) -> None:
-        """Compute on another mesh and with another phase condition from now on."""
-        self.reference = reference
-        self._solution = self._base = None
-        self._floquet = None
-
     # ------------------------------------------------------------------ what the engine asks
-
-    def period(self, z: Array) -> float:
-        """Return the period, in units of time."""
-        return float(z[-2])
 
     def degenerate(self, z: Array) -> bool:
         """Return whether the orbit has no amplitude, or lies across an equilibrium from the last."""
-        flow = self._at(z).flow
-        relative = flow.profile.ranges() / self.reference.scales
+        flow, reference = self._at(z).flow, self.reference(z)
+        relative = flow.profile.ranges() / reference.scales
         if float(relative.max()) < self.settings.smallest:
             return True
-        return self.reference.correlation(flow.stages) < 0.0
+        return reference.correlation(flow.stages) < 0.0
 
     def floquet(self, z: Array) -> Floquet:
         """Return the multipliers, from the transition matrices without their product."""
         if self._floquet is None or not np.array_equal(self._floquet[0], z):
             flow, derivative = self._near(z)
-            velocity = flow.slopes[-1, -1]
-            found = floquet(derivative.ends[:, :, : self._size], velocity, self.reference.scales)
+            velocity, scales = flow.slopes[-1, -1], self.reference(z).scales
+            found = floquet(derivative.ends[:, :, : self._size], velocity, scales)
             self._floquet = (np.array(z), found)
         return self._floquet[1]
 
     def measures(self, z: Array) -> dict[str, float]:
         """Return the period, the highest and lowest value of each state and the trivial error."""
-        self._known[z.tobytes()] = self.reference
-        highest, lowest = self.extrema(z)
+        highest, lowest = self.flow(z).profile.extrema()
         measures = {"period": self.period(z)}
         for j, state in enumerate(self.field.states):
             measures[f"max {state}"] = float(highest[j])
@@ -243,26 +263,25 @@ class ShootingProblem(OrbitProblem):
         measures["trivial error"] = self.floquet(z).trivial_error
         return measures
 
-    def extrema(self, z: Array) -> tuple[Array, Array]:
-        """Return the highest and the lowest values (n,) of the states."""
-        return self._at(z).flow.profile.extrema()
-
     def scales(self, z: Array) -> Array:
-        """Return the scales of the states, the same for all segments, and the period."""
-        states = np.tile(self.reference.scales, self.mesh.segments)
-        return np.append(states, abs(self.period(z)))
+        """Return the scales of the states, the same for all segments, the period, and 1."""
+        reference = self.reference(z)
+        states = np.tile(reference.scales, reference.mesh.segments)
+        return np.concatenate((states, (abs(self.period(z)), 1.0)))
 
     def ends(self, point: Point) -> Stopped | None:
         """Return why the branch ends here: long period, no amplitude left, accuracy lost."""
         z = point.z
-        self._first_period = self._first_period or self.period(z)
+        if self._first_period is None:
+            self._first_period = self.period(z)
         if self.period(z) > self.settings.longest * self._first_period:
             return Stopped.PERIOD
-        if not self.reference.degenerate and self.degenerate(z):
-            return Stopped.VANISHED
-        error = self.floquet(z).trivial_error
-        if error > self.settings.trivial and not self.degenerate(z):
-            return Stopped.ACCURACY if self.mesh.steps >= self.settings.most_steps else None
+        reference = self.reference(z)
+        if self.degenerate(z):
+            return None if reference.degenerate else Stopped.VANISHED
+        full = reference.mesh.steps >= self.settings.most_steps
+        if full and self.floquet(z).trivial_error > self.settings.trivial:
+            return Stopped.ACCURACY
         return None
 
     def adapt(self, z: Array, tangent: Array) -> tuple[Array, Array] | None:
@@ -270,98 +289,97 @@ class ShootingProblem(OrbitProblem):
         if self.degenerate(z):
             return None
         flow, derivative = self._near(z)
-        scales = np.maximum(self.reference.scales, flow.profile.ranges())
+        scales = np.maximum(self.reference(z).scales, flow.profile.ranges())
         error = self.floquet(z).trivial_error
         mesh = better_mesh(flow, derivative, scales, self.settings, trivial_error=error)
         if mesh is not None:
             try:
-                return self._move(z, tangent, mesh)
+                z, tangent = self.on_mesh(z, tangent, mesh)
             except (ConvergenceError, np.linalg.LinAlgError):
                 pass  # the old mesh serves: the branch ends by itself when it does so no longer
-        self._follow(self._at(z).flow, scales)
-        self._known[z.tobytes()] = self.reference
+        z = self._follow(z)
         return z, self.tangent(z, tangent)
 
-    def _follow(self, flow: Flow, scales: Array) -> None:
-        """Compare phases with this orbit from now on."""
-        velocities = flow.period * flow.slopes
-        self.reference = Reference(flow.mesh, flow.stages, velocities, scales)
-        self.integrator.floor = 1e-6 * scales
+    # ------------------------------------------------------------------ from mesh to mesh
 
-    def _move(self, z: Array, tangent: Array, mesh: Mesh) -> tuple[Array, Array]:
-        """Solve for the same orbit on another mesh, where the branch crosses the same hyperplane."""
-        before = self.reference
-        there = moved(*self._near(z), tangent, mesh)
-        rates = self.integrator.rates(there.stages.reshape(-1, self._size), float(z[-1]))
-        velocities = self.period(z) * rates.reshape(there.stages.shape)
-        self.use(Reference(mesh, there.stages, velocities, before.scales))
-        try:
-            solved = self._polish(there.z, there.tangent)
-            flow = self._at(solved).flow
-            self._follow(flow, np.maximum(before.scales, flow.profile.ranges()))
-            self._known[solved.tobytes()] = self.reference
-            return solved, self.tangent(solved, there.tangent)
-        except (ConvergenceError, np.linalg.LinAlgError):
-            self.use(before)
-            raise
+    def _follow(self, z: Array) -> Array:
+        """Return `z` with this orbit itself as the reference of its phase."""
+        flow = self._at(z).flow
+        scales = np.maximum(self.reference(z).scales, flow.profile.ranges())
+        reference = Reference(flow.mesh, flow.stages, flow.period * flow.slopes, scales)
+        followed = np.array(z)
+        followed[-2] = self.generations.add(reference, flow.starts, flow.period, flow.active)
+        self._solution = _Solution(followed, flow, self.integrator)
+        return followed
 
-    def _polish(self, z: Array, tangent: Array) -> Array:
+    def on_mesh(self, z: Array, tangent: Array, mesh: Mesh) -> tuple[Array, Array]:
+        """Solve for the same orbit on another mesh, in the hyperplane with the normal `tangent`.
+
+        Parameters
+        ----------
+        z, tangent : array (M n + 3,)
+            A solution and the direction not to be moved in; all zero but for the last for the same
+            value of the parameter.
+        mesh : Mesh
+            The other mesh.
+
+        Returns
+        -------
+        tuple of array (M' n + 3,)
+            The solution and the direction on the other mesh.
+
+        Raises
+        ------
+        ConvergenceError, numpy.linalg.LinAlgError
+            If the orbit is not found there.
+        """
+        flow, derivative = self._near(z)
+        by_start, by_period = self.starts(tangent), float(tangent[-3])
+        change = derivative.changes(by_start, by_period, float(tangent[-1]))
+        stages, starts, directions = interpolated(flow, change, mesh)
+        rates = self.integrator.rates(stages.reshape(-1, self._size), float(z[-1]))
+        velocities = self.period(z) * rates.reshape(stages.shape)
+        reference = Reference(mesh, stages, velocities, self.reference(z).scales)
+        number = self.generations.add(reference, starts, self.period(z), float(z[-1]))
+        there = self.join(starts, self.period(z), float(z[-1]), number)
+        direction = self.join(directions, by_period, float(tangent[-1]))
+        return self._polished(there, direction), direction
+
+    def _polished(self, z: Array, tangent: Array) -> Array:
         """Return the solution in the hyperplane through `z` with the normal `tangent`."""
-        scales = np.append(self.scales(z), max(1.0, abs(z[-1])))
-        row = tangent / scales**2
+        magnitudes = self._magnitudes(z)
+        row = tangent / magnitudes**2
         for _ in range(_POLISHING):
             step = self.bordered(z, row)(np.append(self.residual(z), 0.0))
             z = z - step
-            size = float(np.abs(step / scales).max())
+            size = float(np.abs(step / magnitudes).max())
             if size < _SAME:
                 return z
             if not size < 1.0:
                 break
-        raise ConvergenceError("the orbit was not found again on its new mesh")
+        raise ConvergenceError("the orbit was not found again on another mesh")
 
     def tangent(self, z: Array, near: Array) -> Array:
-        """Return the branch's direction at `z`, as long as `near` is in the problem's scales."""
-        scales = np.append(self.scales(z), max(1.0, abs(z[-1])))
+        """Return the direction of the branch at `z`, as long as `near` in the problem's scales."""
+        magnitudes = self._magnitudes(z)
         rhs = np.zeros(len(z))
         rhs[-1] = 1.0
-        direction = self.bordered(z, near / scales**2)(rhs)
+        direction = self.bordered(z, near / magnitudes**2)(rhs)
         if not np.all(np.isfinite(direction)):
             raise ConvergenceError("the direction of the branch of orbits is not defined here")
-        length = np.linalg.norm(near / scales) / np.linalg.norm(direction / scales)
+        length = np.linalg.norm(near / magnitudes) / np.linalg.norm(direction / magnitudes)
         return np.asarray(direction * length)
 
-    def refined(self, z: Array) -> Refinement:
-        """Solve for the orbit on a mesh of twice as many steps, at the same parameter.
-
-        Returns
-        -------
-        Refinement
-            The finer orbit, and how far the coarser one is from it.
-
-        Raises
-        ------
-        ConvergenceError
-            If the orbit is not found on the finer mesh.
-        """
-        coarse, flow = self.orbit(z), self._at(z).flow
-        nodes = self.mesh.nodes
-        finer = np.insert(nodes, np.arange(1, len(nodes)), 0.5 * (nodes[1:] + nodes[:-1]))
-        hold = np.zeros(len(z))
-        hold[-1] = 1.0
-        other = ShootingProblem(self.field, self.path, self.reference, self.settings)
-        there = moved(flow, self._near(z)[1], hold, Mesh(finer, self.mesh.segments))
-        rates = self.integrator.rates(there.stages.reshape(-1, self._size), float(z[-1]))
-        velocities = self.period(z) * rates.reshape(there.stages.shape)
-        other.use(Reference(there.mesh, there.stages, velocities, self.reference.scales))
-        return compare(coarse, other.orbit(other._polish(there.z, hold)))  # noqa: SLF001 - own class
+    def _magnitudes(self, z: Array) -> Array:
+        return np.append(self.scales(z), max(1.0, abs(z[-1])))
 
     # ------------------------------------------------------------------ results
 
     def orbit(self, z: Array, samples: int = 201) -> Orbit:
         """Return the orbit as a result, sampled at equal times over one period."""
-        flow = self._at(z).flow
+        profile = self.flow(z).profile
         found = self.floquet(z)
-        highest, lowest = self.extrema(z)
+        highest, lowest = profile.extrema()
         grid = np.linspace(0.0, 1.0, samples)
         return Orbit(
             states=self.field.states,
@@ -369,7 +387,7 @@ class ShootingProblem(OrbitProblem):
             value=float(z[-1]),
             period=self.period(z),
             times=grid * self.period(z),
-            profile=np.ascontiguousarray(flow.profile(grid).T),
+            profile=np.ascontiguousarray(profile(grid).T),
             maxima=highest,
             minima=lowest,
             multipliers=found.multipliers,

@@ -36,9 +36,9 @@ class Start:
     ----------
     problem : ShootingProblem
         The equations.
-    z : array (M n + 2,)
+    z : array (M n + 3,)
         The first point.
-    tangent : array (M n + 2,) or None
+    tangent : array (M n + 3,) or None
         The direction in which to set off, where the start decides it.
     """
 
@@ -114,8 +114,8 @@ def from_hopf(
     )
     problem = ShootingProblem(field, path, reference, settings)
     starts = np.exp(2j * np.pi * mesh.starts)[:, None]
-    z = np.concatenate((np.tile(state, mesh.segments), [2.0 * np.pi / omega], value))
-    tangent = np.concatenate((2.0 * amplitude * (q * starts).real.ravel(), [0.0, 0.0]))
+    z = problem.join(np.tile(state, mesh.segments), 2.0 * np.pi / omega, float(value[0]))
+    tangent = problem.join(2.0 * amplitude * (q * starts).real, 0.0, 0.0)
     return Start(problem, z, tangent)
 
 
@@ -135,18 +135,16 @@ def hopf_orbit(start: Start, amplitude: float, omega: float, form: HopfForm) -> 
 
     Returns
     -------
-    array (M n + 2,)
+    array (M n + 3,)
         Unknowns, for Newton's method to correct.
     """
-    mesh = start.problem.mesh
+    mesh = start.problem.reference(start.z).mesh
     w = amplitude * np.exp(2j * np.pi * mesh.starts)[:, None]
     shift = form.parameter_curvature * amplitude**2
     equilibrium = start.z[: len(form.q)] + form.h11 * amplitude**2 + form.drift * shift
     starts = equilibrium + (2.0 * w * form.q + w**2 * form.h20).real
     frequency = omega + form.frequency_curvature * amplitude**2
-    return np.concatenate(
-        (starts.ravel(), [2.0 * np.pi / frequency, float(start.z[-1]) + shift])
-    )
+    return start.problem.join(starts, 2.0 * np.pi / frequency, float(start.z[-1]) + shift)
 
 
 def from_samples(
@@ -208,7 +206,7 @@ def from_samples(
     scales = np.maximum(ranges, _STILL * np.maximum(np.abs(x).max(axis=1), ranges.max()))
     reference = Reference(mesh, spline(points), spline(points, 1), scales)
     problem = ShootingProblem(field, path, reference, settings)
-    z = np.concatenate((spline(mesh.starts).ravel(), [t[-1] - t[0], value]))
+    z = problem.join(spline(mesh.starts), float(t[-1] - t[0]), value)
     return Start(problem, z, None)
 
 

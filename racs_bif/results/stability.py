@@ -62,13 +62,18 @@ def merged(parts: list[Stretch]) -> list[Stretch]:
 
 
 def describe_stability(branch: Branch) -> str:
-    """Return a line such as ``"stable 5-10.2, unstable (2) 10.2-30"`` in the active parameter."""
+    """Return a line such as ``"stable 5 to 10.2, unstable (2) 10.2 to 30"``.
+
+    It runs along the branch, from the end with the lower value of the active parameter.
+    """
     values = branch.parameter
+    parts = [(values[part.first], values[part.last], part) for part in stretches(branch)]
+    if len(branch) and values[-1] < values[0]:
+        parts = [(end, start, part) for start, end, part in reversed(parts)]
     words = []
-    for part in stretches(branch):
+    for start, end, part in parts:
         count = f" ({part.unstable})" if part.kind == "unstable" else ""
-        ends = f"{values[part.first]:.5g} to {values[part.last]:.5g}"
-        words.append(f"{part.kind}{count} {ends}")
+        words.append(f"{part.kind}{count} {start:.5g} to {end:.5g}")
     return ", ".join(words)
 
 

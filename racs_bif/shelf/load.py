@@ -7,20 +7,22 @@ import functools
 import hashlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.equilibria.calibrate import calibrate
 from racs_bif.errors import ModelError, RacsBifError, UsageError, nearest
-from racs_bif.fractional.filter import Realisation
 from racs_bif.fractional.system import System, choose_realisation
 from racs_bif.shelf.folders import find
 from racs_bif.shelf.modules import complaint, load_module
 from racs_bif.symbolic import cache
 from racs_bif.symbolic.compiled import CompiledModel, compile_model, read_sources, write_sources
-from racs_bif.symbolic.field import Array
 from racs_bif.symbolic.model import Calibration, Model, Parameter
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.filter import Realisation
+    from racs_bif.symbolic.field import Array
 
 _CLOSED = {
     "__future__",

@@ -5,16 +5,19 @@ from __future__ import annotations
 import hashlib
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from racs_bif.symbolic import cache
-from racs_bif.symbolic.field import Array, Vectors
 from racs_bif.symbolic.generate import Sources, generate
 from racs_bif.symbolic.kernels import Functions, Kernel, build
 from racs_bif.symbolic.model import Calibration, Model, Parameter
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from racs_bif.symbolic.field import Array, Vectors
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from racs_bif.errors import ParameterError, UsageError
-from racs_bif.symbolic.compiled import CompiledModel
-from racs_bif.symbolic.field import Array
 from racs_bif.symbolic.model import find_parameter
 from racs_bif.symbolic.paths import ParameterPath
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from racs_bif.symbolic.compiled import CompiledModel
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,11 @@ from racs_bif.symbolic.laws import PowerSum, read_law
 from racs_bif.symbolic.lower import Lowering
 from racs_bif.symbolic.mass import solve_mass
 from racs_bif.symbolic.metadata import describe
-from racs_bif.symbolic.model import Model
 
 if TYPE_CHECKING:
     import sympy as sp
+
+    from racs_bif.symbolic.model import Model
 
 
 @dataclass(frozen=True)

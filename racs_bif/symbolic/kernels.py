@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from types import SimpleNamespace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from racs_bif.symbolic.graph import UNARY
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 def _pow_float(a: float, b: float) -> float:

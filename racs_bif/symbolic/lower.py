@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from racs_bif.errors import ModelError
-from racs_bif.symbolic.graph import Graph
 
 if TYPE_CHECKING:
     import sympy as sp
+
+    from racs_bif.symbolic.graph import Graph
 
 _FUNCTIONS: Final = {"Abs": "fabs", "sign": "sign"} | {
     name: name

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.errors import ModelError
-from racs_bif.symbolic.model import Model
 
 if TYPE_CHECKING:
     from racs_bif.symbolic.lower import Lowering
+    from racs_bif.symbolic.model import Model
 
 
 def solve_mass(model: Model, lower: Lowering, right: list[int]) -> list[int]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from racs_bif.symbolic.field import Array
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from racs_bif.symbolic.field import Array
 
 
 class ParameterPath(ABC):

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import ast
+import math
+import operator
+import unicodedata
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
@@ -12,14 +16,31 @@ from racs_bif.symbolic.model import FractionalElement, Model, Parameter
 if TYPE_CHECKING:
     import sympy as sp
 
-_FUNCTIONS: Final = {
-    name: name
-    for name in (
-        "exp log sqrt sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh erf sign"
-    ).split()
-} | {"abs": "Abs", "ln": "log", "heaviside": "Heaviside", "max": "Max", "min": "Min"}
-_CONSTANTS: Final = {"pi": "pi"}
+_SAME_NAMES: Final = (
+    *("exp", "log", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh"),
+    *("asinh", "acosh", "atanh", "erf", "sign"),
+)
+_FUNCTIONS: Final = {name: name for name in _SAME_NAMES} | {
+    "abs": "Abs",
+    "ln": "log",
+    "heaviside": "Heaviside",
+    "max": "Max",
+    "min": "Min",
+}
+_MANY: Final = (2, 100)
+_ARGUMENTS: Final = {"log": (1, 2), "heaviside": (1, 2), "max": _MANY, "min": _MANY}
+"""Least and greatest number of arguments of functions that do not take one."""
+_OPERATORS: Final[dict[type[ast.operator], Callable[[Any, Any], Any]]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+_CONSTANTS: Final = {"pi"}
 _LONGEST = 20_000
+_LARGEST_POWER = 1000.0
+"""Greatest exponent of a symbol, and greatest number of decimal places of a power of a number."""
 
 
 def model_from_strings(
@@ -63,24 +84,61 @@ def model_from_strings(
     >>> model.states
     ('x',)
     """
+    _check_tables(name, equations, parameters, guess, outputs)
     return Model(
         name=name,
-        equations={state: parse(text) for state, text in equations.items()},
-        parameters=tuple(Parameter(key, float(value)) for key, value in parameters.items()),
-        guess=dict(guess or {}),
-        elements=tuple(
-            FractionalElement(output, parse(source), parse(law))
-            for output, source, law in elements
+        equations=_parsed(equations),
+        parameters=tuple(
+            Parameter(_plain(key), _number(name, key, value)) for key, value in parameters.items()
         ),
-        outputs={key: parse(text) for key, text in (outputs or {}).items()},
+        guess={_plain(k): _number(name, k, value) for k, value in (guess or {}).items()},
+        elements=tuple(_element(name, element) for element in elements),
+        outputs=_parsed(outputs or {}),
     )
+
+
+def _check_tables(name: str, *tables: object) -> None:
+    for table in tables:
+        if table is not None and not isinstance(table, Mapping):
+            kind = type(table).__name__
+            msg = f"model '{name}': give names and expressions as a dict, not as {kind}"
+            raise ModelError(msg)
+        for key in table or ():
+            if key in _CONSTANTS:
+                msg = f"model '{name}': '{key}' is a constant; rename it"
+                raise ModelError(msg)
+
+
+def _plain(name: str) -> str:
+    """Return a name as Python's tokeniser spells it (the micro sign becomes a Greek mu)."""
+    return unicodedata.normalize("NFKC", name) if isinstance(name, str) else name
+
+
+def _parsed(table: Mapping[str, str]) -> dict[str, sp.Expr]:
+    return {_plain(name): parse(text) for name, text in table.items()}
+
+
+def _element(name: str, element: tuple[str, str, str]) -> FractionalElement:
+    if isinstance(element, str) or len(element) != 3:
+        msg = f"model '{name}': an element is (output, input, law), not {element!r}"
+        raise ModelError(msg)
+    output, source, law = element
+    return FractionalElement(_plain(output), parse(source), parse(law))
+
+
+def _number(name: str, key: str, value: float) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        msg = f"model '{name}': '{key}' is {value!r}, which is no number"
+        raise ModelError(msg) from None
 
 
 def parse(text: str) -> sp.Expr:
     """Return the sympy expression of an arithmetic expression.
 
-    Numbers, names, ``+ - * / ** ^``, comparisons, ``a if c else b`` and elementary functions are
-    understood, nothing else.
+    Numbers, names, ``+ - * / ** ^``, ``a if c else b`` with a comparison c, and elementary functions
+    are understood, nothing else.
 
     Raises
     ------
@@ -99,30 +157,46 @@ def parse(text: str) -> sp.Expr:
         msg = f"an expression of {len(text)} characters is too long; split it"
         raise ModelError(msg)
     try:
-        tree = ast.parse(text.strip().replace("^", "**"), mode="eval")
-        return _Builder(text)(tree.body)
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        if isinstance(error, ModelError):
-            raise
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of Python's tokeniser: what matters is refused below
+            tree = ast.parse(text.strip().replace("^", "**"), mode="eval")
+        return _Reader(text).expression(tree.body)
+    except ModelError:
+        raise
+    except (RecursionError, MemoryError):
+        msg = f"'{_short(text)}' is nested too deeply; split it"
+        raise ModelError(msg) from None
+    except (SyntaxError, ValueError, TypeError, ArithmeticError):
         msg = f"'{_short(text)}' is not an arithmetic expression; check brackets and operators"
         raise ModelError(msg) from None
 
 
-class _Builder:
+class _Reader:
+    """Build sympy expressions from those nodes of Python's syntax tree that are arithmetic."""
+
     def __init__(self, text: str) -> None:
         self.text = text
+        self._rules: dict[type[ast.expr], Callable[[Any], sp.Expr]] = {
+            ast.Constant: self._number,
+            ast.Name: self._name,
+            ast.UnaryOp: self._signed,
+            ast.BinOp: self._binary,
+            ast.Call: self._call,
+            ast.IfExp: self._choice,
+        }
 
-    def __call__(self, node: ast.expr) -> Any:  # noqa: ANN401 - sympy is untyped
-        handler: Callable[[Any], Any] | None = getattr(self, f"_{type(node).__name__}", None)
-        if handler is None:
+    def expression(self, node: ast.expr) -> sp.Expr:
+        """Return the expression of a node."""
+        rule = self._rules.get(type(node))
+        if rule is None:
             msg = (
-                f"'{_short(ast.unparse(node))}' in '{_short(self.text)}' is not allowed; use numbers, "
-                "names, + - * / ** and elementary functions"
+                f"'{_short(ast.unparse(node))}' in '{_short(self.text)}' is not allowed; "
+                "use numbers, names, + - * / ** and elementary functions"
             )
             raise ModelError(msg)
-        return handler(node)
+        return rule(node)
 
-    def _Constant(self, node: ast.Constant) -> Any:  # noqa: ANN401 - sympy is untyped
+    def _number(self, node: ast.Constant) -> sp.Expr:
         import sympy as sp
 
         if isinstance(node.value, bool) or not isinstance(node.value, int | float):
@@ -132,68 +206,75 @@ class _Builder:
             return sp.Integer(node.value)
         return sp.Float(repr(node.value))
 
-    def _Name(self, node: ast.Name) -> Any:  # noqa: ANN401 - sympy is untyped
+    def _name(self, node: ast.Name) -> sp.Expr:
         import sympy as sp
 
         return sp.pi if node.id in _CONSTANTS else sp.Symbol(node.id)
 
-    def _UnaryOp(self, node: ast.UnaryOp) -> Any:  # noqa: ANN401 - sympy is untyped
+    def _signed(self, node: ast.UnaryOp) -> sp.Expr:
         if isinstance(node.op, ast.USub):
-            return -self(node.operand)
+            return -self.expression(node.operand)
         if isinstance(node.op, ast.UAdd):
-            return self(node.operand)
+            return self.expression(node.operand)
         msg = f"'{_short(self.text)}': only + and - may stand before a term"
         raise ModelError(msg)
 
-    def _BinOp(self, node: ast.BinOp) -> Any:  # noqa: ANN401 - sympy is untyped
-        left, right = self(node.left), self(node.right)
-        if isinstance(node.op, ast.Add):
-            return left + right
-        if isinstance(node.op, ast.Sub):
-            return left - right
-        if isinstance(node.op, ast.Mult):
-            return left * right
-        if isinstance(node.op, ast.Div):
-            return left / right
+    def _binary(self, node: ast.BinOp) -> sp.Expr:
+        operation = _OPERATORS.get(type(node.op))
+        if operation is None:
+            msg = f"'{_short(self.text)}': use the operators + - * / **"
+            raise ModelError(msg)
+        left, right = self.expression(node.left), self.expression(node.right)
         if isinstance(node.op, ast.Pow):
-            if right.is_number and abs(right) > 1000:
-                msg = f"the exponent {right} in '{_short(self.text)}' is too large"
-                raise ModelError(msg)
-            return left**right
-        msg = f"'{_short(self.text)}': use the operators + - * / **"
-        raise ModelError(msg)
+            self._check_power(left, right)
+        return operation(left, right)
 
-    def _Call(self, node: ast.Call) -> Any:  # noqa: ANN401 - sympy is untyped
+    def _check_power(self, left: sp.Expr, right: sp.Expr) -> None:
+        """Refuse powers whose exact value alone could fill the memory."""
+        if not right.is_number:
+            return
+        size = abs(float(right))
+        if left.is_number and left != 0:
+            size *= max(1.0, abs(math.log10(abs(complex(left)))))
+        if not size <= _LARGEST_POWER:
+            msg = f"a power in '{_short(self.text)}' is too large"
+            raise ModelError(msg)
+
+    def _call(self, node: ast.Call) -> sp.Expr:
         import sympy as sp
 
         if not isinstance(node.func, ast.Name) or node.keywords:
             msg = f"'{_short(ast.unparse(node))}' is not a function call that is understood"
             raise ModelError(msg)
-        if node.func.id not in _FUNCTIONS:
-            known = nearest(node.func.id, _FUNCTIONS)
-            msg = f"unknown function '{node.func.id}' in '{_short(self.text)}'; {known}"
+        name = node.func.id
+        if name not in _FUNCTIONS:
+            hint = nearest(name, _FUNCTIONS)
+            msg = f"unknown function '{name}' in '{_short(self.text)}'; {hint}"
             raise ModelError(msg)
-        function = getattr(sp, _FUNCTIONS[node.func.id])
-        try:
-            return function(*map(self, node.args))
-        except TypeError as error:
+        least, most = _ARGUMENTS.get(name, (1, 1))
+        if not least <= len(node.args) <= most:
             msg = f"'{_short(ast.unparse(node))}': wrong number of arguments"
-            raise ModelError(msg) from error
+            raise ModelError(msg)
+        return getattr(sp, _FUNCTIONS[name])(*map(self.expression, node.args))
 
-    def _Compare(self, node: ast.Compare) -> Any:  # noqa: ANN401 - sympy is untyped
+    def _choice(self, node: ast.IfExp) -> sp.Expr:
         import sympy as sp
 
-        names = {"Lt": sp.Lt, "LtE": sp.Le, "Gt": sp.Gt, "GtE": sp.Ge}
-        kind = type(node.ops[0]).__name__
-        if len(node.ops) != 1 or kind not in names:
+        chosen = (self.expression(node.body), self._condition(node.test))
+        return sp.Piecewise(chosen, (self.expression(node.orelse), True))
+
+    def _condition(self, node: ast.expr) -> sp.Basic:
+        import sympy as sp
+
+        relations = {ast.Lt: sp.Lt, ast.LtE: sp.Le, ast.Gt: sp.Gt, ast.GtE: sp.Ge}
+        if not isinstance(node, ast.Compare) or len(node.ops) != 1:
             msg = f"'{_short(ast.unparse(node))}': compare two terms with < <= > or >="
             raise ModelError(msg)
-        return names[kind](self(node.left), self(node.comparators[0]))
-
-    def _IfExp(self, node: ast.IfExp) -> Any:  # noqa: ANN401 - sympy is untyped
-        import sympy as sp
-
-        return sp.Piecewise((self(node.body), self(node.test)), (self(node.orelse), True))
+        relation = relations.get(type(node.ops[0]))
+        if relation is None:
+            msg = f"'{_short(ast.unparse(node))}': compare two terms with < <= > or >="
+            raise ModelError(msg)
+        return relation(self.expression(node.left), self.expression(node.comparators[0]))
 
 
 def _short(text: str) -> str:

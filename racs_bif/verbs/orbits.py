@@ -15,6 +15,7 @@ from racs_bif.continuation.trace import trace
 from racs_bif.equilibria.hopf_form import HopfForm
 from racs_bif.errors import UsageError, nearest
 from racs_bif.numerics.threads import single_threaded
+from racs_bif.orbits.branch_point import BranchPointOfCycles
 from racs_bif.orbits.cycles_fold import FoldOfCycles
 from racs_bif.orbits.neimark_sacker import NeimarkSacker
 from racs_bif.orbits.orbit import Orbit
@@ -99,7 +100,7 @@ def continue_orbits(  # noqa: PLR0913 - each is one choice of the user's
         start.problem,
         start.z,
         (low, high),
-        [FoldOfCycles(), PeriodDoubling(), NeimarkSacker()],
+        [FoldOfCycles(), BranchPointOfCycles(), PeriodDoubling(), NeimarkSacker()],
         settings or _STEPS,
         tangent=start.tangent,
         direction=1,
@@ -112,6 +113,7 @@ def continue_orbits(  # noqa: PLR0913 - each is one choice of the user's
 def _branch(origin: Origin, problem: OrbitProblem, found: Trace, hopf: SpecialPoint) -> Branch:
     system = origin.system
     sentence, early = assemble.stopped(found)
+    _adopt(found)
     special = []
     profiles = {}
     for raw in [*found.special, *_ends(found)]:
@@ -140,6 +142,13 @@ def _branch(origin: Origin, problem: OrbitProblem, found: Trace, hopf: SpecialPo
 def hopf_parameter(origin: Origin) -> str:
     """Return the active parameter's name."""
     return str(origin.problem.parameter)
+
+
+def _adopt(found: Trace) -> None:
+    """Give the first point, which has no amplitude, the stability of the orbits born from it."""
+    if len(found.points) > 1:
+        first, born = found.points[:2]
+        first.stable, first.unstable = born.stable, born.unstable
 
 
 def _shown(own: tuple[str, ...], columns: dict[str, Any]) -> dict[str, Any]:

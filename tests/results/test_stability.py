@@ -16,6 +16,17 @@ def test_stability_changes_at_the_special_point(branch):
     assert describe_stability(branch) == "stable 5 to 10, unstable (2) 10 to 30"
 
 
+def test_stability_is_told_from_the_lower_end(branch):
+    backward = replace(
+        branch,
+        values=branch.values[::-1],
+        unstable=branch.unstable[::-1],
+        labels=branch.labels[::-1],
+        special=(),
+    )
+    assert describe_stability(backward) == describe_stability(branch)
+
+
 @pytest.mark.parametrize("own", [0, 1, 2])
 def test_what_the_special_point_itself_has_does_not_matter(branch, own):
     unstable = branch.unstable.copy()

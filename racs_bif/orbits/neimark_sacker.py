@@ -1,0 +1,56 @@
+"""NS: a pair of complex multipliers passes through the unit circle."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from racs_bif.continuation.problem import Detector
+from racs_bif.orbits.problem import OrbitProblem, describe
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Point
+    from racs_bif.symbolic.field import Array
+
+_NEAR: Final = 1e-2
+_REAL: Final = 1e-6
+
+
+class NeimarkSacker(Detector):
+    """Two multipliers have the product 1: a torus branches off where they are complex."""
+
+    label = "NS"
+    crossings = 2
+
+    def value(self, problem: OrbitProblem, point: Point) -> float:
+        """Return the smallest |mu_i mu_j - 1| that can change sign, with the sign of the product.
+
+        Those are the products of conjugates and of two real multipliers; the others come in conjugate
+        pairs themselves.
+        """
+        del problem
+        products = _real_products(point.spectrum[1:])[0]
+        if not len(products):
+            return math.nan
+        sign = -1.0 if np.count_nonzero(products < 1.0) % 2 else 1.0
+        return float(sign * np.abs(products - 1.0).min())
+
+    def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
+        """Return the angle, period and multipliers; None at a neutral saddle of cycles."""
+        products, angles = _real_products(point.spectrum[1:])
+        k = int(np.argmin(np.abs(products - 1.0)))
+        if abs(products[k] - 1.0) > _NEAR or angles[k] < _REAL or angles[k] > math.pi - _REAL:
+            return None
+        return {**describe(problem, point), "angle": float(angles[k])}
+
+
+def _real_products(multipliers: NDArray[np.complex128]) -> tuple[Array, Array]:
+    """Return the products of two multipliers that are real, and the angles (0 for two real ones)."""
+    upper = multipliers[multipliers.imag > 0.0]
+    real = multipliers[(multipliers.imag == 0.0) & np.isfinite(multipliers)].real
+    i, j = np.triu_indices(len(real), 1)
+    products = np.concatenate([np.abs(upper) ** 2, real[i] * real[j]])
+    return products, np.concatenate([np.angle(upper), np.zeros(len(i))])
