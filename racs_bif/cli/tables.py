@@ -43,9 +43,10 @@ def special_table(diagram: Diagram) -> Table:
     for title in (_with_unit(name, system), "exact", "shift", "rad/s", "Hz", "l1"):
         table.add_column(title, justify="right", no_wrap=True)
     table.add_column("")
-    for point in diagram.special_points:
-        if point.label not in OPERATING:
-            table.add_row(*_special_row(point, name))
+    for branch in diagram:
+        for point in branch.special:
+            if point.label not in OPERATING:
+                table.add_row(*_special_row(point, branch, name))
     return table
 
 
@@ -89,8 +90,8 @@ def _table(title: str) -> Table:
     )
 
 
-def _special_row(point: SpecialPoint, name: str) -> list[str]:
-    omega = point.data.get("omega")
+def _special_row(point: SpecialPoint, branch: Branch, name: str) -> list[str]:
+    omega = _frequency(point, branch)
     exact = point.exact
     return [
         point.name,
@@ -99,10 +100,18 @@ def _special_row(point: SpecialPoint, name: str) -> list[str]:
         _fixed(exact.parameters.get(name)) if exact else _NONE,
         _short(exact.shift.get(name)) if exact else _NONE,
         _fixed(omega),
-        _fixed(omega / (2 * math.pi), 5) if isinstance(omega, float) else _NONE,
+        _fixed(omega / (2 * math.pi), 5),
         _short(point.data.get("l1")),
         str(point.data.get("criticality", point.title)),
     ]
+
+
+def _frequency(point: SpecialPoint, branch: Branch) -> float:
+    """Return the frequency of a Hopf point, or of the orbit itself; NaN if there is none."""
+    if "period" in branch.measures and point.index >= 0:
+        return 2 * math.pi / float(branch.measures["period"][point.index])
+    omega = point.data.get("omega")
+    return omega if isinstance(omega, float) else math.nan
 
 
 def _operating_row(point: SpecialPoint, branch: Branch, name: str, shown: str) -> list[str]:

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from racs_bif.continuation.settings import StepSettings
 
 _JUMP = 0.1
-_SAMPLES = (0.25, 0.5, 0.75)
+_MANY = 16
+_SAMPLES = 8
+_WINDOW = 1e-3
 _SHALLOW = 0.5
 _REACH = 1e-3
 _ROUNDING = 4e-16
@@ -91,10 +93,9 @@ class Locator:
         if bracket is None:
             return None
         low, high, at_low, at_high = bracket
-        least = min(abs(before), abs(after))
-        if min(abs(at_low), abs(at_high)) > _JUMP * least and not self._steady(
-            segment, place, bracket
-        ):
+        jumps = min(abs(at_low), abs(at_high)) > _JUMP * min(abs(before), abs(after))
+        suspicious = jumps or at_low == 0.0 or len(seen) > _MANY
+        if suspicious and not self._steady(segment, place, bracket):
             return None
         at = low if abs(at_low) <= abs(at_high) else high
         interval = abs(segment.known(high).parameter - segment.known(low).parameter)
@@ -102,15 +103,17 @@ class Locator:
         return found and replace(found, at=at)
 
     def _steady(self, segment: Segment, place: int, bracket: Bracket) -> bool:
-        """Whether a function that jumps keeps its signs on both sides: rounding noise does not."""
-        low, high, at_low, at_high = bracket
+        """Whether the signs on both sides of a bracket last: in rounding noise they do not."""
+        low, high, _, _ = bracket
+        before = self._builder.value(place, segment.a)
         try:
-            for share in _SAMPLES:
-                left = segment.point(share * low)[1]
+            for k in range(1, _SAMPLES + 1):
+                share = _WINDOW * k / _SAMPLES
+                left = segment.point(low - share * low)[1]
                 right = segment.point(high + share * (1.0 - high))[1]
-                if not self._builder.value(place, left) * at_low > 0.0:
+                if not self._builder.value(place, left) * before > 0.0:
                     return False
-                if not self._builder.value(place, right) * at_high > 0.0:
+                if not self._builder.value(place, right) * before < 0.0:
                     return False
         except FAILURES:
             return False

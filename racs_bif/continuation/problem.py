@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 Solver = Callable[[Array], Array]
 """Maps right-hand sides (n+1,) or (n+1, k) to solutions of the same shape."""
 
+Bound = tuple[int, float, float]
+"""Place in z, lowest and highest value."""
+
 _FLOOR = 1e-8
 _EMPTY: Spectrum = np.empty(0, dtype=complex)
 
@@ -103,6 +106,13 @@ class Problem(ABC):
         By default their absolute values. The engine takes the largest that it has seen.
         """
         return np.maximum(np.abs(z[:-1]), _FLOOR)
+
+    def bounds(self) -> tuple[Bound, ...]:
+        """Return (place in z, lowest, highest) of unknowns at whose bounds a branch ends exactly.
+
+        By default none: only the parameter's span counts.
+        """
+        return ()
 
     def adapt(self, z: Array, tangent: Array) -> tuple[Array, Array] | None:
         """Return the same solution and tangent on a better mesh, maybe of another dimension.

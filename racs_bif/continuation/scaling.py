@@ -38,9 +38,16 @@ class Scaling:
         self._width = width
         self.restart(magnitudes)
 
+    def copy(self) -> Scaling:
+        """Return a norm of its own that begins like this one."""
+        twin = Scaling(self._width, self._seen)
+        twin._raise(self._magnitudes)
+        return twin
+
     def restart(self, magnitudes: Array) -> None:
         """Begin anew, such as after a change of the dimension."""
-        self._magnitudes = np.array(magnitudes, dtype=float)
+        self._seen = np.array(magnitudes, dtype=float)
+        self._magnitudes = self._seen.copy()
         self._update()
 
     def _update(self) -> None:
@@ -53,11 +60,10 @@ class Scaling:
 
     def grow(self, magnitudes: Array) -> bool:
         """Take in magnitudes (n,) newly seen; return whether that changed the norm."""
-        if not (magnitudes > self._magnitudes).any():
+        if not (magnitudes > self._seen).any():
             return False
-        np.maximum(self._magnitudes, magnitudes, out=self._magnitudes)
-        self._update()
-        return True
+        np.maximum(self._seen, magnitudes, out=self._seen)
+        return self._raise(magnitudes)
 
     def foresee(self, tangent: Array) -> bool:
         """Take in how far a straight branch would carry the unknowns over the span.
@@ -66,7 +72,14 @@ class Scaling:
         """
         if tangent[-1] == 0.0:
             return False
-        return self.grow(_SLOPE * self._width * np.abs(tangent[:-1] / tangent[-1]))
+        return self._raise(_SLOPE * self._width * np.abs(tangent[:-1] / tangent[-1]))
+
+    def _raise(self, magnitudes: Array) -> bool:
+        if not (magnitudes > self._magnitudes).any():
+            return False
+        np.maximum(self._magnitudes, magnitudes, out=self._magnitudes)
+        self._update()
+        return True
 
     def norm(self, v: Array) -> float:
         """Return the scaled norm of v (n+1,)."""
@@ -80,7 +93,7 @@ class Scaling:
         """
         motion = np.abs(tangent * self._inverse)
         step = maximum / float(motion.max())
-        outward = np.abs(z[:-1] + step * tangent[:-1]) > self._magnitudes
+        outward = np.abs(z[:-1] + step * tangent[:-1]) > self._seen
         if outward.any():
             motion[:-1][outward] *= maximum / max(_GROWTH, maximum)
             step = maximum / float(motion.max())

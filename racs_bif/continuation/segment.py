@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from racs_bif.continuation.scaling import Scaling
     from racs_bif.continuation.settings import StepSettings
 
-_TRUSTED = 1e-10
+_TRUSTED = 1e-11
+_ALIKE, _SOUND = 1e-3, 1e-6
 _TELLING = 0.05
 _NOISE = 1e-12
 _ELSEWHERE = (0.0, 0.17, -0.17, 0.31, -0.31)
@@ -128,13 +129,16 @@ class Segment:
                 raise
             return z, tangent, 0
         moved = self._scaling.norm(corrected.z - z)
-        if expected <= _TRUSTED and moved > 100.0 * expected:
-            return z, tangent, 0
         unit = corrected.tangent * (self._sense / self._scaling.norm(corrected.tangent))
+        doubt = self._scaling.norm(unit - tangent) if expected <= _TRUSTED else 0.0
+        if doubt > _ALIKE or (doubt > 0.0 and moved > 100.0 * expected):
+            return z, tangent, 0
         if not moved <= 0.5 * self.length:
             msg = "a trial point left its segment"
             raise ConvergenceError(msg)
-        self._learn(at, corrected.z, unit, moved)
+        if doubt <= _SOUND:
+            # A tangent from a nearly singular matrix would only spoil the cubic.
+            self._learn(at, corrected.z, unit, moved)
         return corrected.z, unit, corrected.iterations
 
     def _learn(self, at: float, z: Array, tangent: Array, moved: float) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from racs_bif.continuation.points import Array, Point
-    from racs_bif.continuation.problem import Problem
+    from racs_bif.continuation.problem import Bound, Problem
     from racs_bif.continuation.scaling import Scaling
 
 _FIRST_CLOSABLE = 4
@@ -82,7 +82,7 @@ class Stepper:
         self.scaling = scaling
         self._start = self.point = start
         self._tangent = start.tangent * sense
-        self._low, self._high = span
+        self._bounds = ((-1, *span), *builder.problem.bounds())
         self._settings = settings
         self._sense = sense
         self.step = settings.initial
@@ -93,7 +93,7 @@ class Stepper:
 
     def advance(self) -> Point | None:
         """Take one step; return the new point, or None if the walk has ended."""
-        if self.stopped is None and self._exit() <= 0.0:
+        if self.stopped is None and self._exit()[0] <= 0.0:
             self.stopped = Stopped.SPAN
         if self.stopped is None and self._accepted >= self._settings.points:
             self.stopped = Stopped.POINTS
@@ -134,12 +134,15 @@ class Stepper:
             f"{self.point.parameter:.10g}: {reason}"
         )
 
-    def _exit(self) -> float:
-        """Return the step at which the tangent leaves the span."""
-        speed, at = float(self._tangent[-1]), float(self.point.z[-1])
-        if speed == 0.0:
-            return math.inf
-        return ((self._high if speed > 0.0 else self._low) - at) / speed
+    def _exit(self) -> tuple[float, Bound]:
+        """Return the step at which the tangent leaves the spans, and which of them."""
+        steps = []
+        for bound in self._bounds:
+            place, low, high = bound
+            speed, at = float(self._tangent[place]), float(self.point.z[place])
+            end = high if speed > 0.0 else low
+            steps.append((math.inf if speed == 0.0 else (end - at) / speed, bound))
+        return min(steps, key=_first)
 
     def _correct(self, z: Array, row: Array, contraction: float) -> Corrected:
         return newton(
@@ -157,45 +160,59 @@ class Stepper:
         z, tangent = self.point.z, self._tangent
         longest = self.scaling.longest(z, tangent, self._settings.maximum)
         step = self.step = min(self.step, longest)
-        leaving = self._exit()
+        leaving, bound = self._exit()
         if leaving <= _STRETCH * step:
             # The last step is solved with the parameter held at the end of the span.
-            return self._land(z + leaving * tangent)
+            return self._land(z + leaving * tangent, bound)
         corrected = self._correct(z + step * tangent, self.scaling.weights * tangent, CONTRACTION)
-        if not self._low <= corrected.z[-1] <= self._high:
-            return self._land(self._overshot(corrected))
+        passed = [
+            (self._overshot(corrected, bound), bound)
+            for bound in self._bounds
+            if not bound[1] <= corrected.z[bound[0]] <= bound[2]
+        ]
+        if passed:
+            (_, prediction), bound = min(passed, key=_first)
+            return self._land(prediction, bound)
         return self._accept(corrected, held=None)
 
-    def _overshot(self, corrected: Corrected) -> Array:
-        """Return a prediction of where the branch leaves the span, between here and beyond it."""
+    def _overshot(self, corrected: Corrected, bound: Bound) -> tuple[float, Array]:
+        """Return where the branch leaves a span, between here and beyond it: share and solution."""
         a, b = self.point, corrected
-        end = self._high if b.z[-1] > self._high else self._low
-        share = (end - a.z[-1]) / (b.z[-1] - a.z[-1])
+        place, low, high = bound
+        end = high if b.z[place] > high else low
+        share = float((end - a.z[place]) / (b.z[place] - a.z[place]))
         beyond = replace(a, z=b.z, tangent=b.tangent * self._sense)
         segment = Segment(self._builder, self.scaling, self._settings, a, beyond)
         for _ in range(4):
             z, direction = segment.interpolate(share)
-            along_chord = direction[-1] * segment.length * self._sense
+            along_chord = direction[place] * segment.length * self._sense
             if along_chord == 0.0:
                 break
-            share = min(max(share + (end - z[-1]) / along_chord, 0.0), 1.0)
-        return segment.interpolate(share)[0]
+            share = min(max(share + float(end - z[place]) / along_chord, 0.0), 1.0)
+        return share, segment.interpolate(share)[0]
 
-    def _land(self, prediction: Array) -> Point | None:
-        """Solve at the end of the span nearest to a prediction; shorten the step if that fails."""
-        nearer_high = prediction[-1] - self._low > self._high - prediction[-1]
-        end = self._high if nearer_high else self._low
+    def _land(self, prediction: Array, bound: Bound) -> Point | None:
+        """Solve at the end of a span nearest to a prediction; shorten the step if that fails."""
+        place, low, high = bound
+        end = high if prediction[place] - low > high - prediction[place] else low
         prediction = prediction.copy()
-        prediction[-1] = end
+        prediction[place] = end
         row = np.zeros(len(prediction))
-        row[-1] = 1.0 / (self._high - self._low)
+        row[place] = 1.0 / (high - low)
         self.step = min(self.step, self.scaling.norm(prediction - self.point.z))
         corrected = self._correct(prediction, row, CONTRACTION)
-        corrected.z[-1] = end
+        corrected.z[place] = end
         along_branch = self.scaling.weights.dot(self._tangent * corrected.tangent)
         if along_branch < 0.0:
             corrected.tangent = -corrected.tangent
+        if self._outside(corrected.z):
+            self.step *= 0.5
+            return None
         return self._accept(corrected, held=end)
+
+    def _outside(self, z: Array) -> bool:
+        """Whether a solution on one bound is beyond another."""
+        return any(not low <= z[place] <= high for place, low, high in self._bounds)
 
     def _accept(self, corrected: Corrected, *, held: float | None) -> Point | None:
         """Judge a corrected step; make it the present point if it passes."""
@@ -252,7 +269,8 @@ class Stepper:
         if self._accepted < _FIRST_CLOSABLE or len(start.z) != len(point.z):
             return None
         reach = _STRETCH * length
-        if abs(start.z[-1] - point.z[-1]) > reach * (self._high - self._low):
+        _, low, high = self._bounds[0]
+        if abs(start.z[-1] - point.z[-1]) > reach * (high - low):
             return None
         if scaling.norm(start.z - point.z) > reach:
             return None
@@ -267,6 +285,10 @@ class Stepper:
         if scaling.norm(z - start.z) > _SAME or direction < _SAME_DIRECTION:
             return None
         return replace(start, arclength=segment.arclength(share))
+
+
+def _first(pair: tuple[Any, ...]) -> Any:  # noqa: ANN401 - numbers, or tuples of them
+    return pair[0]
 
 
 def begin(

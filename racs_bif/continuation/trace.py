@@ -6,11 +6,8 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from racs_bif.continuation.building import Builder
 from racs_bif.continuation.points import Array, Point, Trace
-from racs_bif.continuation.scaling import Scaling
 from racs_bif.continuation.settings import StepSettings
 from racs_bif.continuation.stepping import Stepper, begin
 from racs_bif.continuation.stopped import Stopped
@@ -94,11 +91,9 @@ def trace(  # noqa: PLR0913 - what a branch is made of
     forward = unit * senses[0] if len(senses) == 1 else unit
     start = builder.point(corrected, forward, 0.0, iterations)
     notes: list[str] = []
-    weights = scaling.weights
     walks: list[_Walk] = []
     for sense in (1, -1)[: len(senses)]:
-        own = Scaling(span[1] - span[0], problem.scales(corrected))
-        own.grow(1.0 / np.sqrt(weights[:-1] * len(weights[:-1])))
+        own = scaling.copy()
         stepper = Stepper(builder, own, start, span, settings, sense)
         watch = Watch(builder, own, settings, notes, replace(start))
         if progress is not None and not walks:

@@ -91,9 +91,7 @@ class Watch:
         self._values = builder.values(start)
         self._places = range(len(self._values))
         self._wanted = [
-            place
-            for place in self._places
-            if isinstance(builder.detectors[place], ParameterTarget)
+            place for place in self._places if isinstance(builder.detectors[place], ParameterTarget)
         ]
         self._sizes = [abs(value) for value in self._values]
         self._pending: _Pending | None = None
@@ -114,7 +112,10 @@ class Watch:
             for place in self._places:
                 self.signs[place] = self._sign(place, self._values[place], values[place])
             self.first = list(self.signs)
-            self.doubtful = [sign == 0 for sign in self.signs]
+            self.doubtful = [
+                sign == 0 and not math.isnan(self._values[place])
+                for place, sign in enumerate(self.signs)
+            ]
             earlier = None
         else:
             self._settle(last, (b.arclength, values))
@@ -223,7 +224,9 @@ class Watch:
         for place, before, after in zip(self._places, *values, strict=True):
             if before * after > 0.0:
                 ends = ((a.arclength, before), (b.arclength, after))
-                outer = [(other[0], other[1][place]) for other in (last.earlier, following) if other]
+                outer = [
+                    (other[0], other[1][place]) for other in (last.earlier, following) if other
+                ]
                 guess = lowest_between(ends, outer)
                 if guess is not None:
                     dips.append((place, guess))
@@ -236,9 +239,7 @@ class Watch:
             found.append(self._turned(segment, *values))
         return [segment.known(at) for at in _apart([at for at in found if at is not None])]
 
-    def _turned(
-        self, segment: Segment, before: list[float], after: list[float]
-    ) -> float | None:
+    def _turned(self, segment: Segment, before: list[float], after: list[float]) -> float | None:
         """Return where the parameter turns back, if that is beyond a value wanted."""
         at = self._locator.turn(segment)
         if at is None:
@@ -281,35 +282,35 @@ class Watch:
         events.sort(key=lambda event: event.at)
         nodes: list[Node] = [(event.point, event.special) for event in events]
         at_start = a.arclength == self.nodes[0][0].arclength
-        if not self._checked or self._mismatches >= _MOST_UNEXPLAINED:
-            return nodes
-        if at_start and self._critical_start():
+        unchecked = not self._checked or self._mismatches >= _MOST_UNEXPLAINED
+        if unchecked or (at_start and self._critical_start()):
             return nodes
         reason = unexplained(self._problem, a, b, [event.crossings for event in events])
         if not reason:
             return nodes
-        middle = None
-        segment = segment or self._locator.segment(a, b)
-        if segment.length > _FLOOR:
-            try:
-                middle = segment.point(0.5)[1]
-            except FAILURES:
-                middle = None
-        if middle is None and at_start:
-            # An eigenvalue is on the axis at the start itself, within the floor.
-            return nodes
-        if middle is None:
+        middle = self._middle(segment or self._locator.segment(a, b))
+        if middle is not None:
+            self.divided = True
+            values = self._between(middle, before)
+            left = self._resolve(a, middle, before, values)
+            return [*left, (middle, None), *self._resolve(middle, b, values, after)]
+        # At the start itself an eigenvalue may be on the axis, within the floor.
+        if not at_start:
             self._mismatches += 1
             self._notes.append(
                 f"unexplained between {self._problem.parameter} = {a.parameter:.10g} and "
                 f"{b.parameter:.10g}: {reason}"
             )
-            return nodes
-        self.divided = True
-        values = self._between(middle, before)
-        left = self._resolve(a, middle, before, values)
-        return [*left, (middle, None), *self._resolve(middle, b, values, after)]
+        return nodes
 
+    def _middle(self, segment: Segment) -> Point | None:
+        """Return a point that halves a segment, unless it is too short."""
+        if segment.length <= _FLOOR:
+            return None
+        try:
+            return segment.point(0.5)[1]
+        except FAILURES:
+            return None
 
     def _critical_start(self) -> bool:
         """Whether eigenvalues are on the axis at the start: it counts for neither side."""

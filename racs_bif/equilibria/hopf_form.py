@@ -81,31 +81,86 @@ def hopf_form(
         Number of leading states that count in |q| = 1.
     """
     A = field.f_x(x, p)
-    n = len(x)
     values, left, right = _eigen(A)
     k = int(np.argmin(np.abs(values - 1j * omega)))
     q = right[:, k]
     q = q / np.sqrt(np.vdot(q[:own], q[:own]).real)
     adjoint = left[:, k]
     adjoint = adjoint / np.conj(np.vdot(adjoint, q))
-    static = np.linalg.solve(A, field.f_xx(x, p, q, q.conj()))
-    double = np.linalg.solve(2j * omega * np.eye(n) - A, field.f_xx(x, p, q, q))
-    cubic = (
-        field.f_xxx(x, p, q, q, q.conj())
-        - 2.0 * field.f_xx(x, p, q, static)
-        + field.f_xx(x, p, q.conj(), double)
-    )
+    third = cubic(field, (x, p), A, omega, (q, adjoint))
     drift = -np.linalg.solve(A, field.f_p(x, p, dp))
     moved = field.f_xx(x, p, q, drift) + field.f_xp(x, p, q, dp)
     return HopfForm(
         omega=omega,
         q=q,
         p=adjoint,
-        h20=np.asarray(double),
-        h11=-np.asarray(static).real,
-        c1=complex(0.5 * np.vdot(adjoint, cubic)),
+        h20=third.h20,
+        h11=third.h11,
+        c1=third.c1,
         mu_slope=complex(np.vdot(adjoint, moved)),
         drift=drift,
+    )
+
+
+@dataclass(frozen=True)
+class Cubic:
+    """The cubic coefficient of a Hopf point.
+
+    Parameters
+    ----------
+    c1 : complex
+        The coefficient.
+    size : float
+        Sum of the magnitudes of the terms that it is the sum of: where c1 is much smaller, it is
+        their difference.
+    h20, h11 : complex and real array (n,)
+        Second order of the centre manifold.
+    """
+
+    c1: complex
+    size: float
+    h20: Complex
+    h11: Array
+
+
+def cubic(
+    field: VectorField,
+    point: tuple[Array, Array],
+    A: Array,
+    omega: float,
+    vectors: tuple[Complex, Complex],
+) -> Cubic:
+    """Compute the cubic coefficient of a Hopf point.
+
+    Parameters
+    ----------
+    field : VectorField
+        The vector field.
+    point : tuple of array
+        The equilibrium (n,) and the base parameters (np,).
+    A : array (n, n)
+        f_x there.
+    omega : float
+        Frequency [rad/s].
+    vectors : tuple of complex array (n,)
+        Right and left eigenvectors q, p with conj(p) . q = 1.
+    """
+    x, p = point
+    q, adjoint = vectors
+    static = np.linalg.solve(A, field.f_xx(x, p, q, q.conj()))
+    double = np.linalg.solve(2j * omega * np.eye(len(x)) - A, field.f_xx(x, p, q, q))
+    terms = np.array(
+        [
+            0.5 * np.vdot(adjoint, field.f_xxx(x, p, q, q, q.conj())),
+            -np.vdot(adjoint, field.f_xx(x, p, q, static)),
+            0.5 * np.vdot(adjoint, field.f_xx(x, p, q.conj(), double)),
+        ]
+    )
+    return Cubic(
+        c1=complex(terms.sum()),
+        size=float(np.abs(terms).sum()),
+        h20=np.asarray(double),
+        h11=-np.asarray(static).real,
     )
 
 

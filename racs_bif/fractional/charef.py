@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,7 +21,9 @@ from racs_bif.fractional.powers import (
     from_zeros_and_poles,
     from_zeros_and_poles_slope,
 )
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,9 +44,7 @@ class Charef(PowerRealisation):
         zeros, poles, top = self._places(order)
         step = 0.5 * self._ratio
         log_top_p = math.log(self.band[0]) + step * (2.0 * self.sections - 1.0)
-        return from_zeros_and_poles_slope(
-            zeros, poles, top, -step * zeros, step * poles, log_top_p
-        )
+        return from_zeros_and_poles_slope(zeros, poles, top, -step * zeros, step * poles, log_top_p)
 
     @property
     def _ratio(self) -> float:

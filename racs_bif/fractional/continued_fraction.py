@@ -15,11 +15,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.fractional.powers import PowerRealisation, Side
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,10 +75,9 @@ def _nodes(order: float, count: int) -> tuple[Array, Array]:
 def _jacobi(order: float, count: int) -> Array:
     """Return the symmetric matrix of the orthogonal polynomials of (1-t)**(a-1) (1+t)**-a."""
     n = np.arange(1.0, count)
-    diagonal = np.append(1.0 - 2.0 * order, (1.0 - 2.0 * order) / (4.0 * n**2 - 1.0))
-    first = 2.0 * order * (1.0 - order)
+    diagonal = (2.0 * order - 1.0) / (4.0 * np.arange(count) ** 2 - 1.0)
     squares = (n - order) * (n - 1.0 + order) / (2.0 * n - 1.0) ** 2
-    squares[:1] = first
+    squares[:1] = 2.0 * order * (1.0 - order)
     off = np.sqrt(squares)
     return np.asarray(np.diag(diagonal) + np.diag(off, 1) + np.diag(off, -1))
 
@@ -83,7 +85,7 @@ def _jacobi(order: float, count: int) -> Array:
 def _jacobi_slope(order: float, count: int) -> Array:
     """Return the derivative of `_jacobi` by the order."""
     n = np.arange(1.0, count)
-    diagonal = np.append(-2.0, -2.0 / (4.0 * n**2 - 1.0))
+    diagonal = 2.0 / (4.0 * np.arange(count) ** 2 - 1.0)
     squares = (n - order) * (n - 1.0 + order) / (2.0 * n - 1.0) ** 2
     slopes = (1.0 - 2.0 * order) / (2.0 * n - 1.0) ** 2
     squares[:1], slopes[:1] = 2.0 * order * (1.0 - order), 2.0 - 4.0 * order

@@ -1,9 +1,10 @@
 """Diffusive realisation: fixed relaxation rates, weights fitted to the law by least squares.
 
 A fractional operator is a continuous sum of first-order relaxations (G. Montseny, *ESAIM Proc.* 5
-(1998) 159-175). Here that sum has a few rates, spaced evenly on a logarithmic scale around the band,
-and their weights minimise the relative error of Z(i omega) over it. The static gain is a constraint, so it is
-exact; the weights are smooth functions of the law, whose derivatives follow from the normal equations.
+(1998) 159-175). Here that sum has a few rates, spaced evenly on a logarithmic scale around the
+band, and their weights minimise the relative error of Z(i omega) over it. The static gain is a
+constraint, so it is exact; the weights are smooth functions of the law, whose derivatives follow
+from the normal equations.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ class Diffusive(Realisation):
         basis, offset = self._basis(law, s)
         weight = self._taper() / np.abs(target)
         matrix = _stack(weight * basis)
-        free = np.linalg.lstsq(matrix, _stack(weight * (target - offset)), rcond=None)[0]
+        free = _least_squares(matrix, _stack(weight * (target - offset)))
         return self._filter(law, free, 0.0 if law.integrates else law.static_gain)
 
     def derivative(self, law: Law, direction: Law) -> Filter:
@@ -86,11 +87,11 @@ class Diffusive(Realisation):
         weight = self._taper() / np.abs(target)
         weight_slope = -weight * np.real(moved / target)
         matrix, right = _stack(weight * basis), _stack(weight * (target - offset))
-        free = np.linalg.lstsq(matrix, right, rcond=None)[0]
+        free = _least_squares(matrix, right)
         matrix_slope = _stack(weight_slope * basis)
         right_slope = _stack(weight_slope * (target - offset) + weight * (moved - offset_slope))
-        first = np.linalg.lstsq(matrix, right_slope - matrix_slope @ free, rcond=None)[0]
-        triangle = np.linalg.qr(matrix, mode="r")
+        first = _least_squares(matrix, right_slope - matrix_slope @ free)
+        triangle = np.asarray(np.linalg.qr(matrix, mode="r"))
         residual = matrix_slope.T @ (right - matrix @ free)
         second = np.linalg.solve(triangle, np.linalg.solve(triangle.T, residual))
         change = self._filter(law, first + second, gain_slope)
@@ -99,7 +100,7 @@ class Diffusive(Realisation):
 
     def _samples(self) -> Complex:
         low, high = self.band
-        return 1j * np.geomspace(low, high, self._count)
+        return np.asarray(1j * np.geomspace(low, high, self._count), dtype=complex)
 
     @property
     def _count(self) -> int:
@@ -107,7 +108,7 @@ class Diffusive(Realisation):
         return max(8 * self.order, math.ceil(_SAMPLES_PER_DECADE * math.log10(high / low)))
 
     def _taper(self) -> Array:
-        """Return weights that let the ends of the band go, where a few rates cannot follow the law."""
+        """Return weights that let the band's ends go, where a few rates cannot follow the law."""
         return np.cos(0.49 * np.pi * np.linspace(-1.0, 1.0, self._count))
 
     def _relaxations(self, s: Complex) -> Complex:
@@ -151,6 +152,10 @@ def _static_slope(law: Law, direction: Law) -> float:
     n_p = float(direction.numerator.coefficients[fixed[0]].sum())
     d_p = float(direction.denominator.coefficients[fixed[1]].sum())
     return (n_p - law.static_gain * d_p) / law.denominator.at_zero
+
+
+def _least_squares(matrix: Array, right: Array) -> Array:
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0], dtype=float)
 
 
 def _stack(values: Complex) -> Array:

@@ -1,8 +1,9 @@
 """The exact model: equilibria and the characteristic matrix with s**alpha on the principal branch.
 
-With w = Z(s) e, Z = N/D, the exact model in ``X = (y, w)`` is ``y' = g(X)``, ``D(s) w = N(s) e(X)``. Its
-characteristic matrix is ``Delta(s) = diag(s, D(s)) - diag(1, N(s)) core_x(X)``: no denominators, hence no
-poles, and roots that are exactly the characteristic roots.
+With w = Z(s) e, Z = N/D, the exact model in ``X = (y, w)`` is ``y' = g(X)``,
+``D(s) w = N(s) e(X)``. Its characteristic matrix is
+``Delta(s) = diag(s, D(s)) - diag(1, N(s)) core_x(X)``: no denominators, hence no poles, and roots
+that are exactly the characteristic roots.
 """
 
 from __future__ import annotations
@@ -96,7 +97,7 @@ class ExactModel:
         value = self.residual(X, p)
         for _ in range(iterations):
             try:
-                step = np.linalg.solve(self.jacobian(X, p), value)
+                step = np.asarray(np.linalg.solve(self.jacobian(X, p), value), dtype=float)
             except np.linalg.LinAlgError:
                 break
             if not np.all(np.isfinite(step)):
@@ -110,7 +111,7 @@ class ExactModel:
     def _damped(
         self, X: Array, p: Array, step: Array, value: Array
     ) -> tuple[Array, Array, float]:
-        """Return the next iterate: the longest halving of the step that lowers the next correction."""
+        """Return the next iterate, by the longest halved step that lowers the next correction."""
         jacobian = self.jacobian(X, p)
         size = float(np.abs(step).max())
         fraction = 1.0

@@ -1,7 +1,8 @@
 """Hopf points of the exact fractional model, by Newton's method on their defining system.
 
 Unknowns are the exact equilibrium X, one parameter, omega and the complex null vector q of
-Delta(i omega); equations are equilibrium, ``Delta(i omega) q = 0`` and ``c* q = 1``. All derivatives are exact.
+Delta(i omega); equations are equilibrium, ``Delta(i omega) q = 0`` and ``c* q = 1``. All
+derivatives are exact.
 """
 
 from __future__ import annotations
@@ -83,8 +84,7 @@ def solve_hopf(
         if not np.all(np.isfinite(step)):
             break
         z -= step
-        scale = np.maximum(np.abs(z), 1e-3 * np.abs(z[: m + 2]).max())
-        error = float(np.max(np.abs(step) / scale))
+        error = float(np.max(np.abs(step) / _magnitudes(z, m)))
         if error < _TOLERANCE:
             break
     if not error < 1e-8 or z[m + 1] <= 0.0:
@@ -95,6 +95,19 @@ def solve_hopf(
         raise ConvergenceError(msg)
     q = z[m + 2 : 2 * m + 2] + 1j * z[2 * m + 2 :]
     return ExactHopf(z[:m], float(z[m]), float(z[m + 1]), q, error)
+
+
+def _magnitudes(z: Array, m: int) -> Array:
+    """Return what corrections are compared with: equilibrium and null vector each as a whole.
+
+    The parameter's unit is anybody's, so it does not enter into the others' magnitudes; it may be
+    zero at the Hopf point and then is compared with omega.
+    """
+    size = np.abs(z)
+    size[:m] = np.maximum(size[:m], max(1e-3 * size[:m].max(), 1e-12))
+    size[m] = max(size[m], 1e-3 * size[m + 1])
+    size[m + 2 :] = size[m + 2 :].max()
+    return size
 
 
 def _null_vector(matrix: Complex) -> Complex:

@@ -108,6 +108,6 @@ class Realisation(ABC):
     def error(self, law: Law) -> float:
         """Return the largest error of the realised law over the band, relative to Z."""
         low, high = self.band
-        s = 1j * np.geomspace(low, high, 400)
+        s = np.asarray(1j * np.geomspace(low, high, 400), dtype=complex)
         exact = law(s)
         return float(np.max(np.abs(self.realise(law)(s) / exact - 1.0)))

@@ -36,7 +36,7 @@ class PowerSum:
         return np.asarray(terms.sum(axis=-1))
 
     def along(self, direction: PowerSum, s: complex | Complex) -> Complex:
-        """Return the derivative by parameters, in which `direction` holds the numbers' derivatives."""
+        """Return the derivative by parameters; `direction` holds the numbers' derivatives."""
         s = np.asarray(s, dtype=complex)[..., None]
         powers = np.where(self.exponents == 0.0, 1.0, s**self.exponents)
         moved = direction.coefficients + self.coefficients * direction.exponents * np.log(s)
@@ -162,8 +162,8 @@ def _check(law: Law) -> None:
     top, bottom = law.numerator.exponents.max(), law.denominator.exponents.max()
     if top - bottom > 1.0:
         msg = (
-            f"the law of '{law.name}' grows like s**{top - bottom:g}; feed it the derivative of its "
-            "input and lower its order by one"
+            f"the law of '{law.name}' grows like s**{top - bottom:g}; feed it the derivative of "
+            "its input and lower its order by one"
         )
         raise ParameterError(msg)
     if not law.feedthrough and top >= bottom:

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -32,7 +33,9 @@ from racs_bif.fractional.powers import (
     from_zeros_and_poles,
     from_zeros_and_poles_slope,
 )
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array
 
 _RATIO = 10.0 / 9.0
 """Xue's b/d."""

@@ -1,9 +1,9 @@
 """Oustaloup's realisation of each power of s, with an exact static gain.
 
-A. Oustaloup, F. Levron, B. Mathieu, F. M. Nanot, *IEEE Trans. Circuits Syst. I* 47 (2000) 25-39: s**a on
-a band by alternating real zeros and poles. Its static gain is wrong (LOW**a instead of zero), which
-moves equilibria; here the slowest zero of each filter lies at s = 0, so that the static gain of the
-law is exact, at the price of a phase error of about LOW/omega inside the band.
+A. Oustaloup, F. Levron, B. Mathieu, F. M. Nanot, *IEEE Trans. Circuits Syst. I* 47 (2000) 25-39:
+s**a on a band by alternating real zeros and poles. Its static gain is wrong (LOW**a, not zero),
+which moves equilibria; here the slowest zero of each filter lies at s = 0, so that the static gain
+of the law is exact, at the price of a phase error of about LOW/omega inside the band.
 """
 
 from __future__ import annotations

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ParameterError, UsageError
 from racs_bif.fractional.filter import Filter, Realisation
-from racs_bif.fractional.laws import Law, PowerSum
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.laws import Law, PowerSum
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True)
@@ -83,14 +86,14 @@ class PowerRealisation(Realisation):
         if not law.feedthrough:
             msg = (
                 f"{self.name} leaves '{law.name}' a direct feedthrough, but its law vanishes at high "
-                "frequency; use --realisation fitted, diffusive or matsuda"
+                "frequency; use --realisation fitted or diffusive"
             )
             raise ParameterError(msg)
         for order in (*law.numerator.exponents, *law.denominator.exponents):
             if not 0.0 <= order < 1.0:
                 msg = (
                     f"{self.name} realises orders between 0 and 1, '{law.name}' has {order:g}; "
-                    "use --realisation fitted, diffusive or matsuda"
+                    "use --realisation fitted or diffusive"
                 )
                 raise ParameterError(msg)
         return self._side(law.numerator), self._side(law.denominator)
@@ -148,7 +151,6 @@ def _residues(zeros: Array, poles: Array) -> Array:
     """Return the residues of prod (s + zeros) / (s + poles), each at its pole."""
     apart = zeros[None, :] - poles[:, None]
     other = poles[None, :] - poles[:, None] + np.eye(len(poles))
-    # the zero of each column stands against its own pole; without the eye that factor is 0
     return np.asarray(np.prod(apart / other, axis=1))
 
 

@@ -13,6 +13,7 @@ from racs_bif.symbolic.field import Array, VectorField, Vectors
 if TYPE_CHECKING:
     from racs_bif.fractional.filter import Filter, Realisation
     from racs_bif.symbolic.compiled import CompiledModel
+    from racs_bif.symbolic.jets import Algebra
 
 
 @dataclass(frozen=True)
@@ -47,15 +48,15 @@ class RealisedField(VectorField):
         self._ne = len(compiled.elements)
         self._key: bytes | None = None
         self._kept: _Frame | None = None
+        self._slopes: dict[bytes, tuple[Filter, ...]] = {}
         self._names: tuple[str, ...] | None = None
 
     @property
     def states(self) -> tuple[str, ...]:  # type: ignore[override]
         """Names of the model's states and of the memory states, ``memory_of_OUTPUT_k``."""
         if self._names is None:
-            defaults = np.array(
-                [p.default if isinstance(p.default, float) else 1.0 for p in self.compiled.parameters]
-            )
+            given = [p.default for p in self.compiled.parameters]
+            defaults = np.array([x if isinstance(x, float) else 1.0 for x in given])
             memory = [
                 f"memory_of_{law.name}_{k + 1}"
                 for law in self.laws(defaults)
@@ -106,12 +107,16 @@ class RealisedField(VectorField):
 
     def _make_frame(self, p: Array) -> _Frame:
         laws = self.laws(p)
-        filters = tuple(self.realisation.realise(law) for law in laws)
+        kept = self._kept
+        if kept is not None and all(map(_same_law, laws, kept.laws)):
+            filters, A, left, right = kept.filters, kept.A, kept.left, kept.right
+        else:
+            filters = tuple(self.realisation.realise(law) for law in laws)
+            A = _diagonal([f.A for f in filters])
+            eye = np.eye(self._ny)
+            left = _diagonal([eye, _diagonal([f.B[:, None] for f in filters])])
+            right = _diagonal([eye, _diagonal([f.C[None, :] for f in filters])])
         P = np.concatenate([p, [f.D for f in filters]])
-        A = _diagonal([f.A for f in filters])
-        eye = np.eye(self._ny)
-        left = _diagonal([eye, _diagonal([f.B[:, None] for f in filters])])
-        right = _diagonal([eye, _diagonal([f.C[None, :] for f in filters])])
         fixed = left @ self.compiled.fixed_jacobian(P) @ right
         fixed[self._ny :, self._ny :] += A
         return _Frame(P, laws, filters, A, left, right, fixed)
@@ -168,6 +173,22 @@ class RealisedField(VectorField):
         R = frame.right
         return np.asarray(frame.left @ self.compiled.core_xx(R @ x, frame.P, R @ u, R @ v))
 
+    def f_xx_matrices(self, x: Array, p: Array, v: Vectors) -> Vectors:
+        """Return the derivatives of f_x v by x for directions v (n, k), as (k, n, n)."""
+        frame = self.frame(p)
+        R, size, count = frame.right, self.compiled.size, v.shape[1]
+        V, directions = np.repeat(R @ v, size, axis=1), np.tile(np.eye(size), (1, count))
+        forms = self.compiled.core_xx(R @ x, frame.P, V, directions)
+        core = forms.reshape(size, count, size).transpose(1, 0, 2)
+        return np.asarray(frame.left @ core @ R)
+
+    def series(self, x: Vectors, p: Array, algebra: Algebra) -> Vectors:
+        """Return the Taylor coefficients (n, len(algebra)) of f at a polynomial x of that shape."""
+        frame = self.frame(p)
+        value = frame.left @ self.compiled.expand("core", algebra, frame.P, frame.right @ x)
+        value[self._ny :] += frame.A @ x[self._ny :]
+        return np.asarray(value)
+
     def f_xxx(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:
         """Return the trilinear form C(u, v, w) at one point, shaped like the directions."""
         frame = self.frame(p)
@@ -198,8 +219,14 @@ class RealisedField(VectorField):
         directions = self.law_directions(p, dp)
         if directions is None:
             return None
-        pairs = zip(self.frame(p).laws, directions, strict=True)
-        return tuple(self.realisation.derivative(law, direction) for law, direction in pairs)
+        key = p.tobytes() + dp.tobytes()
+        if key not in self._slopes:
+            pairs = zip(self.frame(p).laws, directions, strict=True)
+            slopes = tuple(self.realisation.derivative(law, moved) for law, moved in pairs)
+            # Two active parameters at a time ask for theirs again and again.
+            kept = list(self._slopes.items())[-1:]
+            self._slopes = dict([*kept, (key, slopes)])
+        return self._slopes[key]
 
     def _full_direction(self, dp: Array, slopes: tuple[Filter, ...] | None) -> Array:
         if slopes is None:
@@ -228,6 +255,15 @@ class RealisedField(VectorField):
             right = np.append(-f.B * e, output - f.D * e)
             parts.append(np.linalg.lstsq(matrix, right, rcond=None)[0])
         return np.concatenate(parts)
+
+
+def _same_law(a: Law, b: Law) -> bool:
+    pairs = ((a.numerator, b.numerator), (a.denominator, b.denominator))
+    return all(
+        np.array_equal(one.coefficients, other.coefficients)
+        and np.array_equal(one.exponents, other.exponents)
+        for one, other in pairs
+    )
 
 
 def _like(direction: Array, x: Vectors) -> Array:

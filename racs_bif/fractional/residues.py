@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ParameterError
 from racs_bif.fractional.filter import Filter
-from racs_bif.fractional.laws import Complex, Law
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.laws import Complex, Law
+    from racs_bif.symbolic.field import Array
 
 _APART = 1e-6
 
@@ -87,15 +90,16 @@ class ConstrainedFit:
     def __init__(self, A: Array, E: Array) -> None:
         self.A = A
         count = len(E)
-        turned, self._triangle = np.linalg.qr(E.T, mode="complete")
+        turned, triangle = np.linalg.qr(E.T, mode="complete")
         self._held, self._free = turned[:, :count], turned[:, count:]
-        self._triangle = self._triangle[:count]
+        self._triangle: Array = triangle[:count]
         self._fitted = A @ self._free
 
     def solve(self, b: Array, d: Array) -> Array:
         """Return t (n,)."""
         t = self._met(d)
-        return t + self._free @ np.linalg.lstsq(self._fitted, b - self.A @ t, rcond=None)[0]
+        rest = np.linalg.lstsq(self._fitted, b - self.A @ t, rcond=None)[0]
+        return np.asarray(t + self._free @ rest)
 
     def solve_slope(self, t: Array, residual: Array, b_p: Array, d_p: Array, A_p: Array) -> Array:
         """Return the derivative (n,) of t.
@@ -111,13 +115,18 @@ class ConstrainedFit:
         if not self._free.shape[1]:
             return met
         first = np.linalg.lstsq(self._fitted, b_p - A_p @ t - self.A @ met, rcond=None)[0]
-        triangle = np.linalg.qr(self._fitted, mode="r")
+        triangle = np.asarray(np.linalg.qr(self._fitted, mode="r"))
         pull = (A_p @ self._free).T @ residual
         second = np.linalg.solve(triangle, np.linalg.solve(triangle.T, pull))
         return np.asarray(met + self._free @ (first + second))
 
     def _met(self, d: Array) -> Array:
         return np.asarray(self._held @ np.linalg.solve(self._triangle.T, d))
+
+
+def imaginary_axis(band: tuple[float, float], count: int) -> Complex:
+    """Return points (count,) of the imaginary axis, spaced evenly in log omega over a band."""
+    return np.asarray(1j * np.geomspace(*band, count), dtype=np.complex128)
 
 
 def fit_gains(law: Law, rates: Array, s: Complex) -> Filter:
@@ -150,7 +159,7 @@ def static_slope(law: Law, direction: Law) -> float:
     return (n_p - law.static_gain * d_p) / law.denominator.at_zero
 
 
-def checked_rates(poles: Complex, method: str, law: Law) -> Array:
+def checked_rates(poles: Complex | Array, method: str, what: str) -> Array:
     """Return rates (k,), ascending, of poles (k,) that must be real, negative and distinct.
 
     Raises
@@ -166,7 +175,7 @@ def checked_rates(poles: Complex, method: str, law: Law) -> Array:
         return rates
     shown = values[bad][0] if np.any(bad) else -rates[0]
     msg = (
-        f"{method} finds a pole of '{law.name}' at {shown:.4g} rad/s, not real, negative and simple; "
+        f"{method} finds a pole of '{what}' at {shown:.4g} rad/s, not real, negative and simple; "
         "lower its order, or use --realisation fitted or diffusive"
     )
     raise ParameterError(msg)

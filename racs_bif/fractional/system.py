@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.errors import ConvergenceError, ModelError, UsageError, nearest
-from racs_bif.fractional.diffusive import Diffusive
+from racs_bif.errors import ConvergenceError, ModelError
 from racs_bif.fractional.exact import ExactModel
 from racs_bif.fractional.filter import Realisation, RealisationInfo
-from racs_bif.fractional.oustaloup import Oustaloup
 from racs_bif.fractional.realised import RealisedField
 from racs_bif.symbolic.compiled_path import CompiledPath, assign, check_values
 
@@ -21,12 +19,6 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.compiled import CompiledModel, DerivedInfo
     from racs_bif.symbolic.field import Array
     from racs_bif.symbolic.model import Parameter
-
-REALISATIONS: dict[str, type[Diffusive] | type[Oustaloup]] = {
-    "diffusive": Diffusive,
-    "oustaloup": Oustaloup,
-}
-"""Realisations by their name on the command line."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,23 +176,3 @@ class System:
             e = self.compiled.core(X, frame.P)[ny:]
             X[ny:] += frame.P[len(p) :] * e
         return X
-
-
-def choose_realisation(
-    name: str | Realisation | None, band: tuple[float, float], *, order: int = 0
-) -> Realisation:
-    """Return a realisation by name with a band and an order (sections).
-
-    Raises
-    ------
-    UsageError
-        If the name is unknown.
-    """
-    if isinstance(name, Realisation):
-        return name
-    if name in {None, "diffusive"}:
-        return Diffusive(band=band, order=order)
-    if name == "oustaloup":
-        return Oustaloup(band=band, sections=order)
-    msg = f"unknown realisation '{name}'; {nearest(str(name), REALISATIONS)}"
-    raise UsageError(msg)

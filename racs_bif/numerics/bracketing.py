@@ -26,7 +26,9 @@ def root(
     """Shrink a bracket of a sign change by the ITP method.
 
     Source: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5. It is never
-    slower than bisection and needs no continuity.
+    slower than bisection and needs no continuity. Its first trial is never at the root of the
+    secant but a fifth of the bracket beyond: where the function is hard to evaluate at its root, at
+    a branch point for instance, the surroundings are known first.
 
     Parameters
     ----------
@@ -54,7 +56,9 @@ def root(
         secant = (fb * a - fa * b) / (fb - fa)
         truncation = 0.2 * (b - a) ** 2 / width
         sigma = math.copysign(1.0, middle - secant)
-        x = secant + sigma * truncation if truncation <= abs(middle - secant) else middle
+        x = secant + sigma * truncation
+        if step and truncation > abs(middle - secant):
+            x = middle
         reach = max(0.5 * tolerance * 2.0 ** (budget - step) - 0.5 * (b - a), 0.0)
         if abs(x - middle) > reach:
             x = middle - sigma * reach

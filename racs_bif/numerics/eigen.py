@@ -14,7 +14,7 @@ def match(before: Spectrum, after: Spectrum) -> NDArray[np.intp]:
     The sum of all distances is the smallest (linear assignment).
     """
     distance = np.abs(before[:, None] - after[None, :])
-    nearest = distance.argmin(axis=1)
+    nearest: NDArray[np.intp] = distance.argmin(axis=1)
     if len(np.unique(nearest)) == len(before):
         return nearest
     # A slow import, and rarely needed.

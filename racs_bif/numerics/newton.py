@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _SLOW = 0.5
+_STAGNANT = 0.9
 _NOISE = 1e3
 _ROUNDING = 100 * np.finfo(float).eps
 _SMALLEST_DAMPING = 1e-4
@@ -132,10 +133,12 @@ def newton(
         if size <= tolerance:
             return Corrected(corrected, solution[:, 1], iteration, first)
         if size > (contraction if iteration == 2 else _SLOW) * last:
-            if size <= noise or _rounded(equations, z, residual):
+            stagnant = size > _STAGNANT * last and size <= noise
+            if stagnant or _rounded(equations, z, residual):
                 return Corrected(corrected, solution[:, 1], iteration, 0.0)
-            msg = "Newton's method does not contract"
-            raise ConvergenceError(msg)
+            if size > noise:
+                msg = "Newton's method does not contract"
+                raise ConvergenceError(msg)
         z, last = corrected, size
     msg = f"Newton's method did not converge in {iterations} iterations"
     raise ConvergenceError(msg)

@@ -1,24 +1,27 @@
 """Orthogonal condensation of the cyclic systems of multiple shooting and collocation.
 
-M block rows A_m x_m + B_m x_(m+1) + C_m y = r_m on a ring are reduced pair by pair: the QR factorisation
-of the stack [B_m; A_(m+1)] eliminates the point between them, without ever multiplying transition
-matrices, so that neither fast growth nor fast decay is lost (S. J. Wright, *Stable parallel algorithms
-for two-point boundary value problems*, SIAM J. Sci. Stat. Comput. 13, 1992; for the multipliers T. F.
-Fairgrieve and A. D. Jepson, *O.K. Floquet multipliers*, SIAM J. Numer. Anal. 28, 1991).
+M block rows A_m x_m + B_m x_(m+1) + C_m y = r_m on a ring are reduced pair by pair: the QR
+factorisation of the stack [B_m; A_(m+1)] eliminates the point between them, without ever
+multiplying transition matrices, so that neither fast growth nor fast decay is lost (S. J. Wright,
+*Stable parallel algorithms for two-point boundary value problems*, SIAM J. Sci. Stat. Comput. 13,
+1992; for the multipliers T. F. Fairgrieve and A. D. Jepson, *O.K. Floquet multipliers*, SIAM J.
+Numer. Anal. 28, 1991).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.symbolic.field import Array
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True, eq=False)
 class _Level:
-    """One halving of the ring: what the points between the pairs are in terms of their neighbours."""
+    """One halving of the ring: the points between the pairs in terms of their neighbours."""
 
     turn: Array  # (h, 2n, 2n): transposed orthogonal factors
     inverse: Array  # (h, n, n): inverses of the triangular factors
@@ -164,6 +167,6 @@ class BorderedRing:
         condensed, kept = self._ring.reduce(rhs)
         particular = self._ring.expand(np.zeros((size, width)), kept).reshape(count * size, width)
         small = np.concatenate((condensed, border - self._rows @ particular))
-        solution = np.linalg.solve(self._small, small)
+        solution = np.asarray(np.linalg.solve(self._small, small), dtype=float)
         points = particular + self._basis @ solution
         return points.reshape(count, size, width), solution[size:]

@@ -34,8 +34,8 @@ class FoldOfCycles(Detector):
     def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
         """Return period and multipliers; None where no second multiplier is 1 or branches cross.
 
-        A branch born at a symmetry-breaking branch point runs through it with the tangent of a fold,
-        but its matrix is singular there, which that of a fold is not.
+        A branch born at a symmetry-breaking branch point runs through it with the tangent of a
+        fold, but its matrix is singular there, which that of a fold is not.
         """
         others = point.spectrum[1:]
         if not len(others) or np.abs(others - 1.0).min() > _NEAR:

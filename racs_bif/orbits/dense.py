@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from racs_bif.orbits.mesh import Mesh
 from racs_bif.orbits.radau import ABSCISSAE, STAGES
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.orbits.mesh import Mesh
+    from racs_bif.symbolic.field import Array
 
 ORDER: Final = STAGES + 1
 """Power of the step width with which the error of the collocation polynomials falls."""
 
 _POINTS: Final[Array] = np.concatenate(([0.0], ABSCISSAE))
-_TO_POWERS: Final[Array] = np.linalg.inv(np.vander(_POINTS, increasing=True))
+_TO_POWERS: Final[Array] = np.asarray(
+    np.linalg.inv(np.vander(_POINTS, increasing=True)), dtype=float
+)
 _ERROR: Final[Array] = np.polynomial.polynomial.polyint(
     np.polynomial.polynomial.polyfromroots(ABSCISSAE) / 6.0
 )
-"""Coefficients of E(s), the integral of (s - c1)(s - c2)(s - c3) / 3! from 0 to s: h^4 x'''' E is what
-the collocation polynomial misses, to leading order; E vanishes at both ends."""
+"""Coefficients of E(s), the integral of (s - c1)(s - c2)(s - c3) / 3! from 0 to s.
+
+To leading order h^4 x'''' E is what the collocation polynomial misses; E vanishes at both ends.
+"""
 
 
 def _largest_error() -> float:
@@ -58,8 +64,8 @@ class Profile:
     def extrema(self) -> tuple[Array, Array]:
         """Return the highest and the lowest values (n,) of a periodic function.
 
-        They lie at the ends of steps or where a collocation polynomial is stationary; there its leading
-        error is taken off, so that extrema are one order more accurate than the polynomials.
+        They lie at the ends of steps or where a collocation polynomial is stationary; there its
+        leading error is taken off: extrema are one order more accurate than the polynomials.
         """
         within = self._stationary()
         quartic = np.concatenate((self.powers, np.zeros_like(self.powers[:, :1])), axis=1)
@@ -95,7 +101,7 @@ class Profile:
         return np.asarray((after - before) / between[:, None])
 
     def _stationary(self) -> Array:
-        """Return the fractions (N, 2, n) where the cubics are flat; 0 where there is no such place."""
+        """Return the fractions (N, 2, n) where the cubics are flat; 0 where there are none."""
         c1, c2, c3 = self.powers[:, 1], 2.0 * self.powers[:, 2], 3.0 * self.powers[:, 3]
         root = np.sqrt(np.maximum(c2 * c2 - 4.0 * c1 * c3, 0.0))
         q = -0.5 * (c2 + np.where(c2 < 0.0, -root, root))

@@ -1,4 +1,4 @@
-"""The meshes and phase conditions that a branch has used, one generation for every point accepted."""
+"""The meshes and phase conditions that a branch has used, one for every point accepted."""
 
 from __future__ import annotations
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import UsageError
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True, eq=False)

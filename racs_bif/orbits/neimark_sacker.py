@@ -6,12 +6,13 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from racs_bif.continuation.problem import Detector
 from racs_bif.orbits.problem import OrbitProblem, describe
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.continuation.points import Point
     from racs_bif.symbolic.field import Array
 
@@ -28,8 +29,8 @@ class NeimarkSacker(Detector):
     def value(self, problem: OrbitProblem, point: Point) -> float:
         """Return the smallest |mu_i mu_j - 1| that can change sign, with the sign of the product.
 
-        Those are the products of conjugates and of two real multipliers; the others come in conjugate
-        pairs themselves.
+        Those are the products of conjugates and of two real multipliers; the others come in
+        conjugate pairs themselves.
         """
         del problem
         products = _real_products(point.spectrum[1:])[0]
@@ -48,7 +49,7 @@ class NeimarkSacker(Detector):
 
 
 def _real_products(multipliers: NDArray[np.complex128]) -> tuple[Array, Array]:
-    """Return the products of two multipliers that are real, and the angles (0 for two real ones)."""
+    """Return the products of two multipliers that are real, and their angles (0 if both are)."""
     upper = multipliers[multipliers.imag > 0.0]
     real = multipliers[(multipliers.imag == 0.0) & np.isfinite(multipliers)].real
     i, j = np.triu_indices(len(real), 1)

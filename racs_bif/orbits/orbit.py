@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from racs_bif.orbits.remesh import halved
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.orbits.shooting import ShootingProblem
     from racs_bif.symbolic.field import Array
 
@@ -108,9 +109,7 @@ def refined(problem: ShootingProblem, z: Array) -> Refinement:
 def compare(coarse: Orbit, fine: Orbit) -> Refinement:
     """Return the differences between an orbit and the same one on a finer mesh."""
     ranges = np.maximum(fine.maxima - fine.minima, np.finfo(float).tiny)
-    extremes = np.maximum(
-        np.abs(fine.maxima - coarse.maxima), np.abs(fine.minima - coarse.minima)
-    )
+    extremes = np.maximum(np.abs(fine.maxima - coarse.maxima), np.abs(fine.minima - coarse.minima))
     finite = np.isfinite(coarse.multipliers) & np.isfinite(fine.multipliers)
     before, after = coarse.multipliers[finite], fine.multipliers[finite]
     moved = np.abs(after - before) / np.maximum(1.0, np.abs(after))

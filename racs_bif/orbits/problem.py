@@ -6,15 +6,16 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from racs_bif.continuation.problem import Problem
+from racs_bif.orbits.orbit import Orbit
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.continuation.points import Point
     from racs_bif.orbits.floquet import Floquet
-    from racs_bif.orbits.orbit import Orbit
-    from racs_bif.symbolic.field import Array
+    from racs_bif.symbolic.field import Array, VectorField
 
 
 class OrbitProblem(Problem):
@@ -22,7 +23,14 @@ class OrbitProblem(Problem):
 
     Detectors, curves and results ask for nothing more than this. The spectrum is the Floquet
     multipliers with the trivial one first; stability never asks that one.
+
+    Attributes
+    ----------
+    field : VectorField
+        The right-hand side.
     """
+
+    field: VectorField
 
     @abstractmethod
     def period(self, z: Array) -> float:
@@ -32,8 +40,8 @@ class OrbitProblem(Problem):
     def degenerate(self, z: Array) -> bool:
         """Return whether `z` is no proper orbit, such as the Hopf point that a branch starts from.
 
-        Test functions are not defined there: with no amplitude the period is free, and the branch of
-        equilibria passes through.
+        Test functions are not defined there: with no amplitude the period is free, and the branch
+        of equilibria passes through.
         """
 
     @abstractmethod
@@ -41,8 +49,41 @@ class OrbitProblem(Problem):
         """Return the multipliers and the error of the trivial one."""
 
     @abstractmethod
+    def extrema(self, z: Array) -> tuple[Array, Array]:
+        """Return the highest and the lowest values (n,) of the states."""
+
+    @abstractmethod
+    def sample(self, z: Array, fractions: Array) -> Array:
+        """Return the states (n, m) at fractions (m,) of the period."""
+
     def orbit(self, z: Array, samples: int = 201) -> Orbit:
         """Return the orbit as a result, sampled at equal times over one period."""
+        found = self.floquet(z)
+        highest, lowest = self.extrema(z)
+        fractions = np.linspace(0.0, 1.0, samples)
+        return Orbit(
+            states=self.field.states,
+            parameter=self.parameter,
+            value=float(z[-1]),
+            period=self.period(z),
+            times=fractions * self.period(z),
+            profile=self.sample(z, fractions),
+            maxima=highest,
+            minima=lowest,
+            multipliers=found.multipliers,
+            stable=None if self.degenerate(z) else self.stable(found.multipliers),
+            trivial_error=found.trivial_error,
+        )
+
+    def measures(self, z: Array) -> dict[str, float]:
+        """Return the period, the highest and lowest value of each state and the trivial error."""
+        highest, lowest = self.extrema(z)
+        measures = {"period": self.period(z)}
+        for j, state in enumerate(self.field.states):
+            measures[f"max {state}"] = float(highest[j])
+            measures[f"min {state}"] = float(lowest[j])
+        measures["trivial error"] = self.floquet(z).trivial_error
+        return measures
 
     def spectrum(self, z: Array) -> NDArray[np.complex128]:
         """Return the multipliers (n,), the trivial one first; none of what is no proper orbit."""

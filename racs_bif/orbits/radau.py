@@ -1,16 +1,17 @@
 """The Radau IIA method with three stages: its coefficients and its linear algebra.
 
-Order 5, stage order 3, L-stable and stiffly accurate: the last stage is the end of the step (E. Hairer
-and G. Wanner, *Solving Ordinary Differential Equations II*, sections IV.5 and IV.8).
+Order 5, stage order 3, L-stable and stiffly accurate: the last stage is the end of the step (E.
+Hairer and G. Wanner, *Solving Ordinary Differential Equations II*, sections IV.5 and IV.8).
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from racs_bif.symbolic.field import Array
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array
 
 STAGES: Final = 3
 _R: Final = 6.0**0.5
@@ -30,7 +31,7 @@ MATRIX: Final[Array] = np.array(
 WEIGHTS: Final[Array] = MATRIX[-1]
 """Weights of the quadrature (b), exact to degree 4."""
 
-INVERSE: Final[Array] = np.linalg.inv(MATRIX)
+INVERSE: Final[Array] = np.asarray(np.linalg.inv(MATRIX), dtype=float)
 """The inverse of A: stage equations are written A^-1 (Y - x) = tau f(Y), which stays well scaled
 when the problem is stiff."""
 
@@ -43,9 +44,9 @@ class StageFactors:
     The matrix of one step is A^-1 (x) I - tau diag(J_1, J_2, J_3). Its blocks off the diagonal are
     multiples of the identity, so that eliminating block by block costs three inverses of n x n and
     two products: for n = 12 a third of the time of a 3n x 3n inverse, and 60 % of solving for the
-    sensitivities directly. No pivoting across blocks is needed: the leading blocks are singular only for
-    modes with tau lambda in the right half plane, about 2 to 3 in modulus, which the steps do not
-    resolve anyway.
+    sensitivities directly. No pivoting across blocks is needed: the leading blocks are singular
+    only for modes with tau lambda in the right half plane, about 2 to 3 in modulus, which the steps
+    do not resolve anyway.
 
     Parameters
     ----------

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.orbits.mesh import Mesh
 from racs_bif.orbits.radau import WEIGHTS
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.orbits.mesh import Mesh
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True, eq=False)

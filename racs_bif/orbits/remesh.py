@@ -20,7 +20,9 @@ _UNEVEN: Final = 2.0
 _SPARE: Final = 1.25
 """How many more steps are taken than the tolerance asks for, and how much of them lies evenly."""
 _TOO_MANY: Final = 2.0
-"""Steps are given back when there are so many times more than needed."""
+"""Steps are given back when there are so many times more than needed, ..."""
+_HEALTHY: Final = 0.01
+"""... and the error of the trivial multiplier is this far below its bound."""
 
 
 def better_mesh(
@@ -29,18 +31,18 @@ def better_mesh(
     scales: Array,
     settings: OrbitSettings,
     *,
-    trivial_error: float,
+    health: float,
 ) -> Mesh | None:
     """Return a better mesh for an orbit, or None where the present one will do.
 
     The steps are moved when their shares of the error have become uneven; their number follows the
-    tolerance, and is doubled when the trivial multiplier is off; the number of segments follows the
-    growth of the variational solution over a segment.
+    tolerance, and is doubled when the trivial multiplier is off (`Floquet.health`); the number of
+    segments follows the growth of the variational solution over a segment.
     """
     mesh = flow.mesh
     errors = flow.profile.errors(scales)
     segments = _segments(mesh.segments, derivative, scales, settings)
-    steps = rounded(_steps(mesh.steps, errors, settings, trivial_error), segments)
+    steps = rounded(_steps(mesh.steps, errors, settings, health), segments)
     share = errors ** (1.0 / ORDER)
     uneven = float(share.max()) > _UNEVEN * float(share.mean())
     same = steps == mesh.steps and segments == mesh.segments
@@ -50,21 +52,19 @@ def better_mesh(
     return equidistributed(mesh, errors, ORDER, steps, segments)
 
 
-def _steps(steps: int, errors: Array, settings: OrbitSettings, trivial_error: float) -> int:
+def _steps(steps: int, errors: Array, settings: OrbitSettings, health: float) -> int:
     needed = _SPARE * float(np.sum((errors / settings.tolerance) ** (1.0 / ORDER)))
     wanted = steps
     if needed > steps:
         wanted = int(np.ceil(_SPARE * needed))
-    elif trivial_error > settings.trivial:
+    elif health > settings.trivial:
         wanted = 2 * steps
-    elif _TOO_MANY * needed < steps and trivial_error < 1e-3 * settings.trivial:
+    elif _TOO_MANY * needed < steps and health < _HEALTHY * settings.trivial:
         wanted = int(np.ceil(_SPARE * needed))
     return min(max(wanted, settings.steps), settings.most_steps)
 
 
-def _segments(
-    segments: int, derivative: Derivative, scales: Array, settings: OrbitSettings
-) -> int:
+def _segments(segments: int, derivative: Derivative, scales: Array, settings: OrbitSettings) -> int:
     size = len(scales)
     balanced = derivative.ends[:, :, :size] * (scales / scales[:, None])
     growth = float(np.linalg.norm(balanced, axis=(1, 2)).max())
@@ -75,9 +75,7 @@ def _segments(
     return segments
 
 
-def interpolated(
-    flow: Flow, change: tuple[Array, Array], mesh: Mesh
-) -> tuple[Array, Array, Array]:
+def interpolated(flow: Flow, change: tuple[Array, Array], mesh: Mesh) -> tuple[Array, Array, Array]:
     """Interpolate an orbit and a change of it on another mesh, to the order of the dense output.
 
     Parameters

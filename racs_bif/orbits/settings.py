@@ -19,9 +19,9 @@ class OrbitSettings:
     most_steps : int
         Most steps that adaptation may take.
     segments : int
-        Fewest segments of multiple shooting; 1 is single shooting. The default of 8 integrates eight
-        segments side by side, where evaluating f is vectorised well and the condensed system is
-        still cheap (measured for n = 12 and 28: 4 to 16 differ by less than a quarter).
+        Fewest segments of multiple shooting; 1 is single shooting. The default of 8 integrates
+        eight segments side by side, where evaluating f is vectorised well and the condensed system
+        is still cheap (measured for n = 12 and 28: 4 to 16 differ by less than a quarter).
     growth : float
         Largest norm of a segment's transition matrix, in units of the states' ranges; above it the
         segments are halved.
@@ -32,11 +32,11 @@ class OrbitSettings:
         Longest period, relative to the first one of the branch: beyond it the branch ends as
         approaching a homoclinic orbit.
     smallest : float
-        Smallest range of the states, relative to the largest on the branch: below it, and shrinking,
-        the orbit has collapsed onto an equilibrium.
+        Smallest range of the states, relative to the largest on the branch: below it, and
+        shrinking, the orbit has collapsed onto an equilibrium.
     trivial : float
-        Largest error of the trivial multiplier: beyond it the mesh is refined, and the branch ends
-        where that does not help.
+        Largest error of the trivial multiplier (`Floquet.health`, which allows for its splitting at
+        folds): beyond it the mesh is refined, and the branch ends where that does not help.
 
     Raises
     ------
@@ -57,9 +57,7 @@ class OrbitSettings:
         for name in ("growth", "tolerance", "longest", "smallest", "trivial"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
-                raise UsageError(
-                    f"orbit setting '{name}' must be a positive number, not {value!r}"
-                )
+                raise UsageError(f"orbit setting '{name}' must be a positive number, not {value!r}")
         if self.segments < 1:
             raise UsageError(f"orbit setting 'segments' must be at least 1, not {self.segments!r}")
         if not self.segments <= self.steps <= self.most_steps:

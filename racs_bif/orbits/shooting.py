@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -10,11 +11,10 @@ import numpy as np
 
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.errors import ConvergenceError, UsageError
-from racs_bif.orbits.condense import BorderedRing, Ring
+from racs_bif.orbits.assembly import TAIL, dense_jacobian, ring_solver
 from racs_bif.orbits.floquet import Floquet, floquet
 from racs_bif.orbits.flow import Derivative, Flow, Integrator
 from racs_bif.orbits.generations import Generations
-from racs_bif.orbits.orbit import Orbit
 from racs_bif.orbits.problem import OrbitProblem
 from racs_bif.orbits.reference import Reference
 from racs_bif.orbits.remesh import better_mesh, interpolated
@@ -33,8 +33,6 @@ _POLISHING: Final = 6
 """Newton iterations on a new mesh."""
 _DENSE: Final = 128
 """Unknowns up to which a dense LU factorisation is faster than condensation (measured)."""
-_TAIL: Final = 3
-"""Unknowns after the states: period, number of the reference, parameter."""
 
 
 @dataclass(eq=False)
@@ -53,14 +51,14 @@ class _Solution:
 class ShootingProblem(OrbitProblem):
     """Periodic orbits x' = f(x, p) by shooting over the segments of a mesh.
 
-    The unknowns are z = (X_1, ..., X_M, T, g, lambda): the starts of the M segments, the period, the
-    number of the mesh and phase condition in use, and the active parameter. The equations are
-    Phi_m(X_m, T, lambda) = X_(m+1) on the ring, divided by the scales of the states, the integral phase
-    condition against the orbit accepted before, and g = its number. The flow Phi is that of the
-    Radau IIA method, differentiated exactly.
+    The unknowns are z = (X_1, ..., X_M, T, g, lambda): the starts of the M segments, the period,
+    the number of the mesh and phase condition in use, and the active parameter. The equations are
+    Phi_m(X_m, T, lambda) = X_(m+1) on the ring, divided by the scales of the states, the integral
+    phase condition against the orbit accepted before, and g = its number. The flow Phi is that of
+    the Radau IIA method, differentiated exactly.
 
-    The number g never changes while an orbit is solved for; `adapt` gives every accepted orbit a new
-    one. A solution thus knows the equations that it solves, whatever the mesh has become since:
+    The number g never changes while an orbit is solved for; `adapt` gives every accepted orbit a
+    new one. A solution thus knows the equations that it solves, whatever the mesh has become since:
     events between earlier points can be located and profiles drawn at any time.
 
     Parameters
@@ -103,7 +101,7 @@ class ShootingProblem(OrbitProblem):
 
     def starts(self, z: Array) -> Array:
         """Return the starts of the segments (M, n)."""
-        return z[:-_TAIL].reshape(-1, self._size)
+        return z[:-TAIL].reshape(-1, self._size)
 
     def period(self, z: Array) -> float:
         """Return the period, in units of time."""
@@ -118,7 +116,7 @@ class ShootingProblem(OrbitProblem):
             If it belongs to none of this problem's.
         """
         reference = self.generations[z[-2]]
-        if len(z) != reference.mesh.segments * self._size + _TAIL:
+        if len(z) != reference.mesh.segments * self._size + TAIL:
             raise UsageError(
                 f"{len(z)} unknowns do not fit {reference.mesh.segments} segments of {self._size} "
                 "states: take a point of this problem's own branch"
@@ -146,21 +144,7 @@ class ShootingProblem(OrbitProblem):
 
     def jacobian(self, z: Array) -> Array:
         """Return the exact derivative (M n + 2, M n + 3) of the residual."""
-        ends, phase = self._blocks(z)
-        scales = self.reference(z).scales
-        count, size = len(ends), self._size
-        scaled = ends / scales[:, None]
-        jacobian = np.zeros((count * size + 2, count * size + 3))
-        for m in range(count):
-            own = slice(m * size, (m + 1) * size)
-            jacobian[own, own] = scaled[m, :, :size]
-        every = np.arange(count * size)
-        jacobian[every, np.roll(every, -size)] -= np.tile(1.0 / scales, count)
-        jacobian[every, -3] = scaled[:, :, size].ravel()
-        jacobian[every, -1] = scaled[:, :, size + 1].ravel()
-        jacobian[-2, :-2], jacobian[-2, -1] = phase[:-1], phase[-1]
-        jacobian[-1, -2] = 1.0
-        return jacobian
+        return dense_jacobian(*self._blocks(z), self.reference(z).scales)
 
     def bordered(self, z: Array, row: Array) -> Solver:
         """Return a solver of [jacobian; row].
@@ -170,26 +154,7 @@ class ShootingProblem(OrbitProblem):
         """
         if len(z) <= _DENSE:
             return super().bordered(z, row)
-        ends, phase = self._blocks(z)
-        scales = self.reference(z).scales
-        count, size = len(ends), self._size
-        scaled = ends / scales[:, None]
-        transitions = scaled[:, :, :size] * scales
-        rows = np.stack((phase, np.delete(row, -2)))
-        borders = rows[:, :-2].reshape(2, count, size) * scales
-        ring = Ring(transitions, np.broadcast_to(-np.eye(size), transitions.shape))
-        solver = BorderedRing(ring, scaled[:, :, size:], borders, rows[:, -2:])
-
-        def solve(rhs: Array) -> Array:
-            matrix = rhs.reshape(len(rhs), -1)
-            width, number = matrix.shape[1], matrix[-2]
-            border = np.stack((matrix[-3], matrix[-1] - row[-2] * number))
-            points, unknowns = solver.solve(matrix[:-_TAIL].reshape(count, size, width), border)
-            states = (points * scales[:, None]).reshape(-1, width)
-            solution = np.concatenate((states, unknowns[:1], number[None], unknowns[1:]))
-            return solution.reshape(rhs.shape)
-
-        return solve
+        return ring_solver(*self._blocks(z), self.reference(z).scales, row)
 
     def _blocks(self, z: Array) -> tuple[Array, Array]:
         """Return the derivatives of the ends (M, n, n + 2) and of the phase (M n + 2,)."""
@@ -213,13 +178,13 @@ class ShootingProblem(OrbitProblem):
         starts, period, active = self.starts(z), self.period(z), float(z[-1])
         base = self._base
         if base is None or base.flow.mesh is not reference.mesh:
-            stages, factors = reference.stages, None
+            stages, near = reference.stages, None
         else:
             flow, derivative = base.flow, base.derivative
             change = (starts - flow.starts, period - flow.period, active - flow.active)
-            stages, factors = flow.stages + derivative.changes(*change)[1], derivative.factors
+            stages, near = flow.stages + derivative.changes(*change)[1], derivative
         self.integrator.floor = 1e-6 * reference.scales
-        flow = self.integrator.flow(reference.mesh, starts, period, active, stages, factors)
+        flow = self.integrator.flow(reference.mesh, starts, period, active, stages, near)
         self._solution = _Solution(np.array(z), flow, self.integrator)
         return self._solution
 
@@ -237,7 +202,7 @@ class ShootingProblem(OrbitProblem):
     # ------------------------------------------------------------------ what the engine asks
 
     def degenerate(self, z: Array) -> bool:
-        """Return whether the orbit has no amplitude, or lies across an equilibrium from the last."""
+        """Return whether there is no amplitude, or it has changed sign at an equilibrium."""
         flow, reference = self._at(z).flow, self.reference(z)
         relative = flow.profile.ranges() / reference.scales
         if float(relative.max()) < self.settings.smallest:
@@ -248,20 +213,12 @@ class ShootingProblem(OrbitProblem):
         """Return the multipliers, from the transition matrices without their product."""
         if self._floquet is None or not np.array_equal(self._floquet[0], z):
             flow, derivative = self._near(z)
-            velocity, scales = flow.slopes[-1, -1], self.reference(z).scales
-            found = floquet(derivative.ends[:, :, : self._size], velocity, scales)
+            at_ends = flow.slopes[flow.mesh.per_segment - 1 :: flow.mesh.per_segment, -1]
+            velocities = np.roll(at_ends, 1, axis=0)
+            scales = self.reference(z).scales
+            found = floquet(derivative.ends[:, :, : self._size], velocities, scales)
             self._floquet = (np.array(z), found)
         return self._floquet[1]
-
-    def measures(self, z: Array) -> dict[str, float]:
-        """Return the period, the highest and lowest value of each state and the trivial error."""
-        highest, lowest = self.flow(z).profile.extrema()
-        measures = {"period": self.period(z)}
-        for j, state in enumerate(self.field.states):
-            measures[f"max {state}"] = float(highest[j])
-            measures[f"min {state}"] = float(lowest[j])
-        measures["trivial error"] = self.floquet(z).trivial_error
-        return measures
 
     def scales(self, z: Array) -> Array:
         """Return the scales of the states, the same for all segments, the period, and 1."""
@@ -280,7 +237,7 @@ class ShootingProblem(OrbitProblem):
         if self.degenerate(z):
             return None if reference.degenerate else Stopped.VANISHED
         full = reference.mesh.steps >= self.settings.most_steps
-        if full and self.floquet(z).trivial_error > self.settings.trivial:
+        if full and self.floquet(z).health > self.settings.trivial:
             return Stopped.ACCURACY
         return None
 
@@ -290,13 +247,12 @@ class ShootingProblem(OrbitProblem):
             return None
         flow, derivative = self._near(z)
         scales = np.maximum(self.reference(z).scales, flow.profile.ranges())
-        error = self.floquet(z).trivial_error
-        mesh = better_mesh(flow, derivative, scales, self.settings, trivial_error=error)
+        health = self.floquet(z).health
+        mesh = better_mesh(flow, derivative, scales, self.settings, health=health)
         if mesh is not None:
-            try:
+            # if that fails the old mesh serves, until it no longer does and the branch ends
+            with suppress(ConvergenceError, np.linalg.LinAlgError):
                 z, tangent = self.on_mesh(z, tangent, mesh)
-            except (ConvergenceError, np.linalg.LinAlgError):
-                pass  # the old mesh serves: the branch ends by itself when it does so no longer
         z = self._follow(z)
         return z, self.tangent(z, tangent)
 
@@ -375,22 +331,10 @@ class ShootingProblem(OrbitProblem):
 
     # ------------------------------------------------------------------ results
 
-    def orbit(self, z: Array, samples: int = 201) -> Orbit:
-        """Return the orbit as a result, sampled at equal times over one period."""
-        profile = self.flow(z).profile
-        found = self.floquet(z)
-        highest, lowest = profile.extrema()
-        grid = np.linspace(0.0, 1.0, samples)
-        return Orbit(
-            states=self.field.states,
-            parameter=self.parameter,
-            value=float(z[-1]),
-            period=self.period(z),
-            times=grid * self.period(z),
-            profile=np.ascontiguousarray(profile(grid).T),
-            maxima=highest,
-            minima=lowest,
-            multipliers=found.multipliers,
-            stable=self.stable(found.multipliers),
-            trivial_error=found.trivial_error,
-        )
+    def extrema(self, z: Array) -> tuple[Array, Array]:
+        """Return the highest and the lowest values (n,) of the states."""
+        return self.flow(z).profile.extrema()
+
+    def sample(self, z: Array, fractions: Array) -> Array:
+        """Return the states (n, m) at fractions (m,) of the period."""
+        return np.ascontiguousarray(self.flow(z).profile(fractions).T)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from racs_bif.errors import UsageError
 from racs_bif.orbits.mesh import Mesh
@@ -16,6 +15,8 @@ from racs_bif.orbits.settings import OrbitSettings
 from racs_bif.orbits.shooting import ShootingProblem
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
     from racs_bif.equilibria.hopf_form import HopfForm
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
@@ -59,10 +60,10 @@ def from_hopf(
 ) -> Start:
     """Start the branch of orbits that is born at a Hopf point.
 
-    The first point is the equilibrium as an orbit of no amplitude and of period 2 pi / omega, and the
-    branch leaves it along Re(q e^(i theta)), with period and parameter unchanged to first order.
-    Steps of the engine are measured against an amplitude at which the orbits are no longer small:
-    by the normal form, where the parameter has moved by a twentieth of itself.
+    The first point is the equilibrium as an orbit of no amplitude and of period 2 pi / omega, and
+    the branch leaves it along Re(q e^(i theta)), with period and parameter unchanged to first
+    order. Steps of the engine are measured against an amplitude at which the orbits are no longer
+    small: by the normal form, where the parameter has moved by a twentieth of itself.
 
     Parameters
     ----------
@@ -210,7 +211,9 @@ def from_samples(
     return Start(problem, z, None)
 
 
-def _amplitude(state: Array, value: float, q: NDArray[np.complex128], form: HopfForm | None) -> float:
+def _amplitude(
+    state: Array, value: float, q: NDArray[np.complex128], form: HopfForm | None
+) -> float:
     """Return the amplitude |w| at which orbits are no longer small."""
     size = float(np.linalg.norm(q))
     if form is None:

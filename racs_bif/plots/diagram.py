@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
     from numpy.typing import NDArray
 
     from racs_bif.results.branch import Branch
@@ -97,6 +98,8 @@ def picture(diagram: Diagram, state: str | None = None) -> Figure:
         ax = figure.add_subplot()
         _draw(diagram, quantity, ax)
         _label(diagram, quantity, ax, settle=True)
+    # The layout is final, and the labels with it.
+    figure.set_layout_engine("none")
     return figure
 
 
@@ -166,10 +169,10 @@ def _mark(branch: Branch, y: NDArray[np.float64], ax: Axes) -> None:
             [branch.parameter[point.index]],
             [y[point.index]],
             marker="o" if user else MARKERS.get(point.label, _OTHER),
-            markersize=2.2 if user else 4.0,
+            markersize=2.0 if user else 3.4,
             markerfacecolor="white" if user else colour,
             markeredgecolor=colour if user else "white",
-            markeredgewidth=0.6 if user else 0.4,
+            markeredgewidth=0.5 if user else 0.3,
             linestyle="None",
             label=f"_{point.name}",
             zorder=5,
@@ -181,12 +184,11 @@ def _label(diagram: Diagram, quantity: str, ax: Axes, *, settle: bool) -> None:
     from racs_bif.plots.placing import Label, covers_curve, place
 
     ax.autoscale_view()
-    legend = ax.legend(loc="best")
+    legend: Legend = ax.legend(loc="best")
     if settle:
         _settle(ax)
-    if covers_curve(ax, legend.get_window_extent()):
-        legend = ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, columnspacing=1.0)
-        if settle:
+        if covers_curve(ax, legend.get_window_extent()):
+            legend = _legend_above(ax)
             _settle(ax)
     labels = []
     for branch in diagram:
@@ -195,6 +197,13 @@ def _label(diagram: Diagram, quantity: str, ax: Axes, *, settle: bool) -> None:
                 x = float(branch.parameter[point.index])
                 labels.append(Label(point.name, x, float(y[point.index])))
     place(ax, labels, taken=[legend.get_window_extent()])
+
+
+def _legend_above(ax: Axes) -> Legend:
+    handles, titles = ax.get_legend_handles_labels()
+    ax.legend().remove()
+    figure = ax.figure
+    return figure.legend(handles, titles, loc="outside upper center", ncols=2, columnspacing=1.2)
 
 
 def _settle(ax: Axes) -> None:

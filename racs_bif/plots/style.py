@@ -32,7 +32,6 @@ _SETTINGS: Final[dict[str, object]] = {
     "axes.grid": False,
     "axes.formatter.useoffset": False,
     "axes.formatter.limits": (-4, 5),
-    "axes.formatter.use_mathtext": True,
     "axes.unicode_minus": True,
     "xtick.direction": "in",
     "ytick.direction": "in",

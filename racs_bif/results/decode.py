@@ -7,10 +7,18 @@ from operator import itemgetter
 import numpy as np
 
 from racs_bif.results.branch import Branch, Profile
-from racs_bif.results.encode import EIGENVALUES, SPECTRA, TIME
+from racs_bif.results.encode import DATA, EIGENVALUES, SPECTRA, TIME
 from racs_bif.results.provenance import RealisationInfo, SystemInfo
 from racs_bif.results.special import ExactPoint, SpecialPoint, Value
-from racs_bif.results.tree import Node, Variable, complex_array, real_array, words, words_array
+from racs_bif.results.tree import (
+    Node,
+    Variable,
+    complex_array,
+    numbers,
+    real_array,
+    words,
+    words_array,
+)
 
 
 def decode_branch(node: Node) -> Branch:
@@ -72,49 +80,54 @@ def _decode_system(node: Node) -> SystemInfo:
 
 
 def _decode_special(node: Node) -> SpecialPoint:
-    exact = node.groups.get("exact")
+    found: dict[str, Value] = {}
+    for name, value in node.attributes.items():
+        if name.startswith(DATA) and not isinstance(value, tuple):
+            found[name.removeprefix(DATA)] = value
+    found |= {name: _decode_array(variable) for name, variable in node.variables.items()}
+    exact = None
+    if "exact_omega" in node.attributes:
+        exact = ExactPoint(
+            parameters=_numbered(node, "exact_parameter"),
+            omega=_real(node, "exact_omega"),
+            shift=_numbered(node, "exact_shift"),
+        )
     return SpecialPoint(
         label=str(node.attributes["label"]),
         name=str(node.attributes["name"]),
         branch=str(node.attributes["branch"]),
         index=_integer(node, "index"),
-        parameters=_decode_numbers(node.groups["parameters"]),
-        state=_decode_numbers(node.groups["state"]),
-        data={name: _decode_value(v) for name, v in node.groups["data"].variables.items()},
-        exact=None
-        if exact is None
-        else ExactPoint(
-            parameters=_decode_numbers(exact.groups["parameters"]),
-            omega=_real(exact, "omega"),
-            shift=_decode_numbers(exact.groups["shift"]),
-        ),
+        parameters=_numbered(node, "parameter"),
+        state=_numbered(node, "state"),
+        data=found,
+        exact=exact,
     )
 
 
 def _decode_profile(node: Node) -> Profile:
-    times = real_array(node.variables[TIME])
-    names, states = _columns(node, "state", len(times))
-    return Profile(times=times, names=names, states=states)
+    states = node.variables["states"]
+    return Profile(
+        times=real_array(node.variables[TIME]),
+        names=words(states.attributes.get("names")),
+        states=real_array(states),
+    )
 
 
-def _decode_numbers(node: Node) -> dict[str, float]:
-    values = node.variables["value"].data.tolist()
-    return dict(zip(words_array(node.variables["name"]), values, strict=True))
-
-
-def _decode_value(variable: Variable) -> Value:
-    kind = variable.attributes["type"]
-    if kind == "str":
-        return words_array(variable)[0]
+def _decode_array(variable: Variable) -> Value:
     dtype = np.dtype(str(variable.attributes["dtype"]))
     if dtype.kind == "c":
         array: np.ndarray = complex_array(variable).astype(dtype)
     else:
         array = variable.data.astype(dtype)
-    if kind == "array":
+    if variable.attributes["type"] == "array":
         return array
     value: Value = array.item()
     return value
+
+
+def _numbered(node: Node, name: str) -> dict[str, float]:
+    names = words(node.attributes.get(f"{name}_names"))
+    return dict(zip(names, numbers(node.attributes.get(f"{name}_values")), strict=True))
 
 
 def _columns(node: Node, role: str, count: int) -> tuple[tuple[str, ...], np.ndarray]:

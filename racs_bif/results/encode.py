@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 
     from racs_bif.results.branch import Branch, Profile
     from racs_bif.results.provenance import SystemInfo
-    from racs_bif.results.special import ExactPoint, SpecialPoint
+    from racs_bif.results.special import SpecialPoint
 
 POINT, TIME, ROOT = "point", "time", "root"
 """Dimensions: points along a branch, time along an orbit, eigenvalues or multipliers."""
+DATA = "data."
+"""What the names of attributes begin with that a detector found."""
 SPECTRA = {"orbit": "multipliers"}
 """What the spectrum of a kind of branch is called, where it is not eigenvalues."""
 EIGENVALUES = "eigenvalues"
@@ -56,7 +58,7 @@ def encode_branch(branch: Branch) -> Node:
     columns = [("parameter", name, branch.values[:, k]) for k, name in enumerate(branch.parameters)]
     columns += [("state", name, branch.states[:, k]) for k, name in enumerate(branch.state_names)]
     columns += [("measure", name, column) for name, column in branch.measures.items()]
-    _add_columns(node, POINT, columns, branch.system)
+    _add_columns(node, columns, branch.system)
     node.groups["system"] = _encode_system(branch.system)
     special = {point.name: _encode_special(point) for point in branch.special}
     if special:
@@ -102,69 +104,57 @@ def _encode_special(point: SpecialPoint) -> Node:
             "name": point.name,
             "branch": point.branch,
             "index": point.index,
-        },
-        groups={
-            "parameters": _encode_numbers(point.parameters),
-            "state": _encode_numbers(point.state),
-            "data": Node(variables=_encode_data(point)),
-        },
+            **_numbered("parameter", point.parameters),
+            **_numbered("state", point.state),
+        }
     )
     if point.exact is not None:
-        node.groups["exact"] = _encode_exact(point.exact)
+        node.attributes["exact_omega"] = point.exact.omega
+        node.attributes |= _numbered("exact_parameter", point.exact.parameters)
+        node.attributes |= _numbered("exact_shift", point.exact.shift)
+    for name, value in point.data.items():
+        if isinstance(value, np.ndarray | complex):
+            node.variables[name] = _encode_array(point, name, value)
+        else:
+            node.attributes[f"{DATA}{name}"] = value
     return node
 
 
-def _encode_exact(exact: ExactPoint) -> Node:
-    return Node(
-        {"omega": exact.omega},
-        groups={
-            "parameters": _encode_numbers(exact.parameters),
-            "shift": _encode_numbers(exact.shift),
-        },
-    )
+def _encode_array(point: SpecialPoint, name: str, value: np.ndarray | complex) -> Variable:
+    array = np.asarray(value)
+    kind = "array" if isinstance(value, np.ndarray) else "number"
+    attributes: dict[str, Attribute] = {"type": kind, "dtype": array.dtype.str}
+    dimensions = tuple(f"{name}_{axis}" for axis in range(array.ndim))
+    if array.dtype.kind == "c":
+        return complex_variable(dimensions, array.astype(complex), attributes)
+    if array.dtype.kind == "b":
+        return Variable(dimensions, array.astype(np.int8), attributes)
+    if array.dtype.kind in "iuf":
+        return Variable(dimensions, array, attributes)
+    msg = f"{point.name}: '{name}' holds {array.dtype}, a file takes numbers and words"
+    raise TypeError(msg)
 
 
 def _encode_profile(profile: Profile, system: SystemInfo) -> Node:
-    node = Node(variables={TIME: Variable((TIME,), profile.times, {"units": "s"})})
-    columns = [("state", name, profile.states[:, k]) for k, name in enumerate(profile.names)]
-    _add_columns(node, TIME, columns, system)
-    return node
-
-
-def _encode_numbers(numbers: Mapping[str, float]) -> Node:
+    units = tuple(system.unit(name) for name in profile.names)
+    attributes = _listed("names", profile.names) | _listed("units", units)
     return Node(
         variables={
-            "name": words_variable("entry", tuple(numbers)),
-            "value": Variable(("entry",), _numbers(numbers.values())),
+            TIME: Variable((TIME,), profile.times, {"units": "s"}),
+            "states": Variable((TIME, "state"), profile.states, attributes),
         }
     )
 
 
-def _encode_data(point: SpecialPoint) -> dict[str, Variable]:
-    found: dict[str, Variable] = {}
-    for name, value in point.data.items():
-        if isinstance(value, str):
-            text = np.array([value], dtype=object)
-            found[name] = Variable(("one",), text, {"type": "str"})
-            continue
-        array = np.asarray(value)
-        kind = "array" if isinstance(value, np.ndarray) else type(value).__name__
-        attributes: dict[str, Attribute] = {"type": kind, "dtype": array.dtype.str}
-        dimensions = tuple(f"{name}_{axis}" for axis in range(array.ndim))
-        if array.dtype.kind == "c":
-            found[name] = complex_variable(dimensions, array.astype(complex), attributes)
-        elif array.dtype.kind == "b":
-            found[name] = Variable(dimensions, array.astype(np.int8), attributes)
-        elif array.dtype.kind in "iuf":
-            found[name] = Variable(dimensions, array, attributes)
-        else:
-            msg = f"{point.name}: '{name}' holds {array.dtype}, a file takes numbers and words"
-            raise TypeError(msg)
-    return found
+def _numbered(name: str, values: Mapping[str, float]) -> dict[str, Attribute]:
+    """Return names and numbers as two attributes; none where there are none."""
+    if not values:
+        return {}
+    return {f"{name}_names": tuple(values), f"{name}_values": tuple(values.values())}
 
 
 def _add_columns(
-    node: Node, dimension: str, columns: Iterable[tuple[str, str, np.ndarray]], system: SystemInfo
+    node: Node, columns: Iterable[tuple[str, str, np.ndarray]], system: SystemInfo
 ) -> None:
     for place, (role, name, column) in enumerate(columns):
         attributes: dict[str, Attribute] = {
@@ -174,7 +164,7 @@ def _add_columns(
             "place": place,
         }
         free = _variable_name(name, node)
-        node.variables[free] = Variable((dimension,), np.ascontiguousarray(column), attributes)
+        node.variables[free] = Variable((POINT,), np.ascontiguousarray(column), attributes)
 
 
 def _variable_name(name: str, node: Node) -> str:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from h5netcdf import File, Group
     from numpy.typing import NDArray
 
-Attribute = str | int | float | tuple[str, ...]
-"""Words and single numbers beside the data; a tuple of words has at least one."""
+Attribute = bool | str | int | float | tuple[str, ...] | tuple[float, ...]
+"""Words and numbers beside the data; a tuple has at least one."""
 COMPLEX = "re_im"
 """Trailing dimension of complex numbers: real part, imaginary part."""
 
@@ -71,7 +71,14 @@ def words(value: Attribute | None) -> tuple[str, ...]:
     """Return words kept as an attribute: netCDF does not tell one word from a list of one."""
     if value is None:
         return ()
-    return value if isinstance(value, tuple) else (str(value),)
+    return tuple(map(str, value)) if isinstance(value, tuple) else (str(value),)
+
+
+def numbers(value: Attribute | None) -> tuple[float, ...]:
+    """Return numbers kept as an attribute, one or several."""
+    if value is None:
+        return ()
+    return tuple(map(float, value)) if isinstance(value, tuple) else (float(value),)
 
 
 def real_array(variable: Variable) -> NDArray[np.float64]:
@@ -141,8 +148,8 @@ def _pieces(node: Node, path: str) -> Iterator[bytes]:
 
 def _attribute_pieces(attributes: Mapping[str, Attribute], path: str) -> Iterator[bytes]:
     for name, value in sorted(attributes.items()):
-        single = value[0] if isinstance(value, tuple) and len(value) == 1 else value
-        text = single.hex() if isinstance(single, float) else repr(single)
+        several = value if isinstance(value, tuple) else (value,)
+        text = [v.hex() if isinstance(v, float) else repr(v) for v in several]
         yield f"{path}@{name}={text}".encode()
 
 
@@ -179,18 +186,25 @@ def _read(group: File | Group) -> Node:
 
 def _stored(value: Attribute) -> object:
     if isinstance(value, tuple):
-        return list(value)
+        return list(value) if isinstance(value[0], str) else np.array(value, dtype=float)
+    if isinstance(value, bool):
+        return np.int8(value)
     if isinstance(value, str):
         return value
     return np.int64(value) if isinstance(value, int) else np.float64(value)
 
 
 def _attribute(value: object) -> Attribute:
-    if isinstance(value, np.ndarray):
-        value = value.tolist() if value.ndim else value.item()
-    if isinstance(value, list | tuple):
-        texts = tuple(str(word) for word in value)
-        return texts if len(texts) != 1 else texts[0]
+    """Return an attribute as it was before it was stored, but for tuples of one."""
+    if isinstance(value, np.ndarray) and value.size == 1:
+        value = value.reshape(-1)[0]
+    if isinstance(value, np.ndarray | list | tuple):
+        several = list(value)
+        if any(isinstance(one, str) for one in several):
+            return tuple(map(str, several))
+        return tuple(map(float, several))
+    if isinstance(value, np.int8):
+        return bool(value)
     if isinstance(value, np.integer | int):
         return int(value)
     return float(value) if isinstance(value, np.floating | float) else str(value)

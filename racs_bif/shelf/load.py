@@ -13,7 +13,8 @@ import numpy as np
 
 from racs_bif.equilibria.calibrate import calibrate
 from racs_bif.errors import ModelError, RacsBifError, UsageError, nearest
-from racs_bif.fractional.system import System, choose_realisation
+from racs_bif.fractional.realisations import choose_realisation
+from racs_bif.fractional.system import System
 from racs_bif.shelf.folders import find
 from racs_bif.shelf.modules import complaint, load_module
 from racs_bif.symbolic import cache
@@ -32,15 +33,25 @@ _CLOSED = {
     "functools",
     "itertools",
     "math",
-    "racs_bif",
     "sympy",
     "typing",
 }
 """Modules that do not change between two runs of the same versions."""
-_OPEN_CALLS = {"open", "exec", "eval", "__import__", "compile", "input"}
+_OWN = {"racs_bif.errors", "racs_bif.symbolic"}
+"""Parts of this package that read no other files."""
+_OWN_NAMES = {
+    *("Calibration", "DerivedParameter", "FractionalElement", "Model", "Parameter"),
+    "model_from_strings",
+}
+"""Public names of this package that read no other files."""
+_OPEN_NAMES = {
+    *("open", "exec", "eval", "compile", "input", "getattr", "globals", "vars"),
+    *("__import__", "__builtins__", "__loader__", "__spec__"),
+}
+"""Names by which a file can reach what is not in its text."""
 
 
-def load_model(  # noqa: PLR0913 - each is one choice of the user's
+def load_model(
     name: str,
     *,
     parameters: Mapping[str, float] | None = None,
@@ -113,14 +124,18 @@ def system_of(
     """
     if isinstance(model, System):
         return model.with_parameters(parameters) if parameters else model
-    if not isinstance(model, Model):
-        msg = f"{type(model).__name__} is no model; give a Model, or a name through load_model"
-        raise UsageError(msg)
-    compiled = compile_model(model)
+    compiled = compile_model(_checked(model))
     return _system(compiled, lambda _: compiled, parameters, realisation, band, order)
 
 
-def _system(  # noqa: PLR0913 - what load_model was given
+def _checked(model: object) -> Model:
+    if not isinstance(model, Model):
+        msg = f"{type(model).__name__} is no model; give a Model, or a name through load_model"
+        raise UsageError(msg)
+    return model
+
+
+def _system(
     compiled: CompiledModel,
     again: Callable[[Mapping[str, str]], CompiledModel],
     parameters: Mapping[str, float] | None,
@@ -182,17 +197,32 @@ def _is_closed(text: str) -> bool:
         tree = ast.parse(text)
     except (SyntaxError, ValueError):
         return False
-    for node in ast.walk(tree):
-        modules: list[str] = []
-        if isinstance(node, ast.Import):
-            modules = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            modules = [node.module or ""] if not node.level else [""]
-        elif isinstance(node, ast.Name) and node.id in _OPEN_CALLS:
-            return False
-        if any(name.split(".")[0] not in _CLOSED for name in modules):
-            return False
-    return True
+    package = {
+        alias.asname or alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import)
+        for alias in node.names
+        if alias.name == "racs_bif"
+    }
+    return all(_is_closed_node(node, package) for node in ast.walk(tree))
+
+
+def _is_closed_node(node: ast.AST, package: set[str]) -> bool:
+    """Judge one node; `package` holds the names by which the file calls racs_bif itself."""
+    if isinstance(node, ast.Import):
+        return all(a.name == "racs_bif" or _is_closed_module(a.name) for a in node.names)
+    if isinstance(node, ast.ImportFrom):
+        if node.module == "racs_bif":
+            return all(alias.name in _OWN_NAMES for alias in node.names)
+        return not node.level and _is_closed_module(node.module or "")
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+        return node.value.id not in package or node.attr in _OWN_NAMES
+    return not (isinstance(node, ast.Name) and node.id in _OPEN_NAMES)
+
+
+def _is_closed_module(name: str) -> bool:
+    parts = name.split(".")
+    return parts[0] in _CLOSED or ".".join(parts[:2]) in _OWN
 
 
 def _defaults(

@@ -36,7 +36,7 @@ def folder() -> Path:
 
 @functools.cache
 def generator() -> str:
-    """Return a digest of all that turns a model into code: this package and the versions it runs on."""
+    """Return a digest of all that turns a model into code: this package and the versions used."""
     import numpy as np
 
     digest = hashlib.sha256()
@@ -69,7 +69,7 @@ def read(name: str) -> str | None:
     """Return the text of an entry, None if there is none or it is damaged."""
     try:
         text = (folder() / name).read_text(encoding="utf-8")
-    except (OSError, UnicodeError):
+    except (OSError, UnicodeError, RuntimeError):  # the last where there is no home folder
         return None
     head, _, body = text.partition("\n")
     if head != _HEADER + hashlib.sha256(body.encode()).hexdigest():
@@ -80,16 +80,16 @@ def read(name: str) -> str | None:
 
 def write(name: str, body: str) -> None:
     """Store an entry; a folder that cannot be written is noted in the log and passed over."""
-    target = folder() / name
     text = f"{_HEADER}{hashlib.sha256(body.encode()).hexdigest()}\n{body}"
     temporary = None
     try:
+        target = folder() / name
         target.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".writing-")
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
             stream.write(text)
         os.replace(temporary, target)  # noqa: PTH105 - the two paths are strings already
-    except OSError as error:
+    except (OSError, RuntimeError) as error:
         _LOG.info("cache entry %s was not written: %s", name, error)
         if temporary is not None:
             with contextlib.suppress(OSError):

@@ -11,6 +11,7 @@ import numpy as np
 
 from racs_bif.symbolic import cache
 from racs_bif.symbolic.generate import Sources, generate
+from racs_bif.symbolic.jets import Algebra, Coefficients, JetFunctions
 from racs_bif.symbolic.kernels import Functions, Kernel, build
 from racs_bif.symbolic.model import Calibration, Model, Parameter
 
@@ -36,8 +37,9 @@ class DerivedInfo:
 class CompiledModel:
     """The core of a model, compiled.
 
-    ``X = (y, zeta)`` (n + ne,) holds the model's states and the memory of its elements, ``P = (p, D)``
-    (np + ne,) the base parameters and the direct feedthroughs; see `racs_bif.symbolic.generate`.
+    ``X = (y, zeta)`` (n + ne,) holds the model's states and the memory of its elements,
+    ``P = (p, D)`` (np + ne,) the base parameters and the direct feedthroughs; see
+    `racs_bif.symbolic.generate`.
 
     Parameters
     ----------
@@ -60,6 +62,7 @@ class CompiledModel:
         self.outputs: tuple[str, ...] = tuple(meta["outputs"])
         self._kernels: dict[str, Kernel] = {}
         self._forms: tuple[Functions, Functions] | None = None
+        self._jets: JetFunctions | None = None
         size = len(self.states) + len(self.elements)
         self.size = size
         self._fixed_at = _places(meta["fixed"])
@@ -136,6 +139,31 @@ class CompiledModel:
     def core_xp(self, x: Array, p: Array, u: Vectors, dp: Array) -> Vectors:
         """Return the derivative of (core_x u) in the direction `dp` of P at one point."""
         return self.kernel("core_xp")(p, x, u, dp)
+
+    def expand(self, name: str, algebra: Algebra, *groups: Coefficients) -> Coefficients:
+        """Return Taylor coefficients of a function of the main module, of any order.
+
+        Parameters
+        ----------
+        name : str
+            Function, such as ``core``.
+        algebra : Algebra
+            The monomials of the expansion.
+        *groups : arrays (k,) or (k, len(algebra))
+            Arguments, P first: constants or coefficients.
+
+        Returns
+        -------
+        array (outputs, len(algebra))
+
+        Raises
+        ------
+        ConvergenceError
+            If the function is not smooth here.
+        """
+        if self._jets is None:
+            self._jets = JetFunctions(self.sources.main)
+        return self._jets(name, algebra, *groups)
 
     def output_values(self, x: Array, p: Array) -> dict[str, Array]:
         """Return the model's outputs by name."""

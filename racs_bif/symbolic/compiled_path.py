@@ -66,13 +66,13 @@ class CompiledPath(ParameterPath):
         if self.names[index] in base:
             dp[base.index(self.names[index])] = 1.0
         derived = [d.name for d in self.compiled.derived]
+        active = [k for k, name in enumerate(self.names) if name in derived]
         p = self.vector(values)
-        for k, name in enumerate(self.names):
-            if name in derived:
-                j = derived.index(name)
-                place = base.index(self.compiled.derived[j].sets)
-                slope = 1.0 if k == index else 0.0
-                dp[place] = self.compiled.inverse_slope(j, p, float(values[k]), dp, slope)
+        for k in active * len(active):  # as often as `assign` goes round
+            j = derived.index(self.names[k])
+            place = base.index(self.compiled.derived[j].sets)
+            slope = 1.0 if k == index else 0.0
+            dp[place] = self.compiled.inverse_slope(j, p, float(values[k]), dp, slope)
         return dp
 
 
@@ -82,19 +82,31 @@ def assign(compiled: CompiledModel, values: Array, wanted: dict[str, float]) -> 
     Raises
     ------
     ParameterError
-        If a name is unknown.
+        If a name is unknown, or derived parameters cannot have these values together.
     """
     base = [p.name for p in compiled.parameters]
     derived = [d.name for d in compiled.derived]
     p = np.array(values, dtype=float)
-    for name in wanted:
+    for name, value in wanted.items():
         find_parameter(name, [*base, *derived])
         if name in base:
-            p[base.index(name)] = wanted[name]
-    for j, info in enumerate(compiled.derived):
-        if info.name in wanted:
-            p[base.index(info.sets)] = compiled.inverse(j, p, float(wanted[info.name]))
+            p[base.index(name)] = value
+    moved = [j for j, name in enumerate(derived) if name in wanted]
+    for j in moved * len(moved):  # one may depend on what another sets: n rounds settle n of them
+        info = compiled.derived[j]
+        p[base.index(info.sets)] = compiled.inverse(j, p, float(wanted[info.name]))
+    if len(moved) > 1:
+        _check_together(compiled, p, {j: wanted[derived[j]] for j in moved})
     return p
+
+
+def _check_together(compiled: CompiledModel, p: Array, wanted: dict[int, float]) -> None:
+    reached = compiled.derived_values(p)
+    for j, value in wanted.items():
+        if not abs(reached[j] - value) <= 1e-9 * abs(value):
+            names = " and ".join(compiled.derived[k].name for k in wanted)
+            msg = f"{names} cannot be set together, each moves what the other needs; set one"
+            raise ParameterError(msg)
 
 
 def check_values(compiled: CompiledModel, wanted: dict[str, float]) -> None:

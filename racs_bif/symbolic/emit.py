@@ -1,8 +1,8 @@
 """From straight-line programs to Python source.
 
-Every function comes in two parts: ``NAME_prepare(p)`` computes once what depends on parameters only,
-``NAME(c, x, ...)`` the rest. Both call elementary functions by name, so that the same text runs on
-floats (with `math`) and on arrays (with numpy).
+Every function comes in two parts: ``NAME_prepare(p)`` computes once what depends on parameters
+only, ``NAME(c, x, ...)`` the rest. Both call elementary functions by name, so that the same text
+runs on floats (with `math`) and on arrays (with numpy).
 """
 
 from __future__ import annotations

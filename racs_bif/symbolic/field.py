@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 """Real array."""
-Vectors = NDArray[np.float64] | NDArray[np.complex128]
+Vectors = NDArray[np.inexact[Any]]
 """Directions, which may be complex where they are eigenvectors."""
 
 
@@ -17,8 +18,8 @@ class VectorField(ABC):
     """An autonomous ordinary differential equation x' = f(x, p) with exact derivatives.
 
     ``x`` has shape (n,), or (n, N) for N points at once; ``p`` is the full vector (np,) of base
-    parameters in the order of `parameters`. Directions ``u, v, w`` have shape (n,) or (n, k) and may
-    be complex; ``dp`` is a direction (np,) in parameter space.
+    parameters in the order of `parameters`. Directions ``u, v, w`` have shape (n,) or (n, k) and
+    may be complex; ``dp`` is a direction (np,) in parameter space.
 
     Attributes
     ----------
@@ -46,6 +47,13 @@ class VectorField(ABC):
     @abstractmethod
     def f_xx(self, x: Array, p: Array, u: Vectors, v: Vectors) -> Vectors:
         """Return the bilinear form B(u, v) at one point, shaped like the directions."""
+
+    def f_xx_matrices(self, x: Array, p: Array, v: Vectors) -> Vectors:
+        """Return the derivatives of f_x v by x for directions v (n, k), as (k, n, n)."""
+        n, count = v.shape
+        directions = np.tile(np.eye(n), (1, count))
+        forms = self.f_xx(x, p, np.repeat(v, n, axis=1), directions)
+        return np.asarray(forms.reshape(n, count, n).transpose(1, 0, 2))
 
     @abstractmethod
     def f_xxx(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:

@@ -1,7 +1,8 @@
 """Forward-mode derivatives of straight-line programs, as further nodes of the same graph.
 
 Applied once this gives columns of Jacobians, applied k times with k sets of directions the
-multilinear forms of order k (A. Griewank and A. Walther, *Evaluating Derivatives*, SIAM 2008, ch. 3).
+multilinear forms of order k (A. Griewank and A. Walther, *Evaluating Derivatives*, SIAM 2008,
+chapter 3).
 """
 
 from __future__ import annotations
@@ -55,14 +56,19 @@ def _div(g: Graph, node: int, args: tuple[int, ...], dots: list[int]) -> int:
 
 
 def _pow(g: Graph, node: int, args: tuple[int, ...], dots: list[int]) -> int:
+    # Absorbing products: x**2 with a parameter for the 2 has a third derivative at x = 0, and
+    # derivatives along other parameters where the logarithm is undefined.
     a, b = args
     result = g.zero
     if dots[0] != g.zero:
-        slope = g.mul(b, g.power(a, g.sub(b, g.one)))
-        result = g.mul(slope, dots[0])
+        result = g.mul(g.absorb(g.power(a, g.sub(b, g.one)), b), dots[0])
     if dots[1] != g.zero:
-        result = g.add(result, g.mul(g.mul(node, g.unary("log", a)), dots[1]))
+        result = g.add(result, g.absorb(g.absorb(g.unary("log", a), node), dots[1]))
     return result
+
+
+def _absorb(g: Graph, _: int, args: tuple[int, ...], dots: list[int]) -> int:
+    return g.add(g.absorb(args[0], dots[1]), g.absorb(dots[0], args[1]))
 
 
 def _chain(slope: Callable[[Graph, int, int], int]) -> Rule:
@@ -103,6 +109,7 @@ _RULES: Final[dict[str, Rule]] = {
     "mul": _mul,
     "div": _div,
     "pow": _pow,
+    "absorb": _absorb,
     "where": _where,
     "exp": _chain(lambda _, node, __: node),
     "log": _over(lambda _, __, a: a),

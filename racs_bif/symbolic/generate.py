@@ -242,4 +242,4 @@ def _module(functions: Sequence[str], meta: dict[str, Any]) -> str:
     return f"META = {meta!r}\n\n\ndef make(m):\n{calls}\n{body}\n    return {{{table}}}\n"
 
 
-_CALLED = (*UNARY, *LOGIC, "pow", "where")
+_CALLED = (*UNARY, *LOGIC, "pow", "where", "absorb")

@@ -70,11 +70,19 @@ class Graph:
         name, _, payload = self.ops[node]
         return float(payload) if name == "const" else None
 
+    def _folded(self, name: str, args: tuple[int, ...], compute: Callable[[], float]) -> int:
+        """Return the node of a number, or of its operation where it is not finite."""
+        try:
+            value = compute()
+        except (ArithmeticError, ValueError):
+            value = math.nan
+        return self.constant(value) if math.isfinite(value) else self._node(name, args)
+
     def add(self, a: int, b: int) -> int:
         """Return a + b."""
         x, y = self.value(a), self.value(b)
         if x is not None and y is not None:
-            return self.constant(x + y)
+            return self._folded("add", (a, b), lambda: x + y)
         if x == 0.0:
             return b
         if y == 0.0:
@@ -89,7 +97,7 @@ class Graph:
         """Return a - b."""
         x, y = self.value(a), self.value(b)
         if x is not None and y is not None:
-            return self.constant(x - y)
+            return self._folded("sub", (a, b), lambda: x - y)
         if a == b:
             return self.zero
         if y == 0.0:
@@ -115,30 +123,42 @@ class Graph:
         """Return a * b."""
         for left, right in ((a, b), (b, a)):
             x = self.value(left)
-            if x is None:
-                continue
-            y = self.value(right)
-            if y is not None:
-                return self.constant(x * y)
-            if x == 0.0:
-                return self.zero
-            if x == 1.0:
-                return right
-            if x == -1.0:
-                return self.neg(right)
+            if x is not None:
+                return self._scaled(x, left, right)
         if self.ops[a][0] == "neg":
             return self.neg(self.mul(self.ops[a][1][0], b))
         if self.ops[b][0] == "neg":
             return self.neg(self.mul(a, self.ops[b][1][0]))
         return self._node("mul", (min(a, b), max(a, b)))
 
+    def _scaled(self, x: float, left: int, right: int) -> int:
+        """Return the product of the constant x, which is node `left`, and node `right`."""
+        y = self.value(right)
+        if y is not None:
+            return self._folded("mul", (left, right), lambda: x * y)
+        if x == 0.0:
+            return self.zero
+        if abs(x) == 1.0:
+            return right if x > 0.0 else self.neg(right)
+        if self.ops[right][0] == "neg":
+            return self.neg(self.mul(left, self.ops[right][1][0]))
+        return self._node("mul", (min(left, right), max(left, right)))
+
+    def absorb(self, a: int, b: int) -> int:
+        """Return a * b, zero where b is zero even if a is not finite there."""
+        if self.value(b) is not None or self.value(a) is not None:
+            return self.mul(a, b)
+        return self._node("absorb", (a, b))
+
     def div(self, a: int, b: int) -> int:
         """Return a / b."""
         x, y = self.value(a), self.value(b)
         if y == 1.0:
             return a
-        if y is not None and y != 0.0:
-            return self.mul(self.constant(1.0 / y), a) if x is None else self.constant(x / y)
+        if x is not None and y is not None:
+            return self._folded("div", (a, b), lambda: x / y)
+        if y is not None and y != 0.0 and math.isfinite(1.0 / y):
+            return self.mul(self.constant(1.0 / y), a)
         if x == 0.0:
             return self.zero
         if self.ops[a][0] == "neg":
@@ -147,21 +167,17 @@ class Graph:
 
     def power(self, a: int, b: int) -> int:
         """Return a ** b; small whole and half exponents become products and roots."""
-        exponent = self.value(b)
-        base = self.value(a)
-        if exponent is not None:
-            if exponent == 0.0:
-                return self.one
-            if base is not None and (base > 0.0 or (base == 0.0 and exponent > 0.0)):
-                return self.constant(base**exponent)
-            if exponent < 0.0:
-                return self.div(self.one, self.power(a, self.constant(-exponent)))
-            if exponent == 0.5:
-                return self.unary("sqrt", a)
-            if exponent == int(exponent) and exponent <= 64:
-                return self._whole_power(a, int(exponent))
-        elif base == 1.0:
+        exponent, base = self.value(b), self.value(a)
+        if exponent == 0.0 or base == 1.0:
             return self.one
+        if exponent is not None and base is not None:
+            return self._folded("pow", (a, b), lambda: math.pow(base, exponent))
+        if exponent is not None and exponent < 0.0:
+            return self.div(self.one, self.power(a, self.constant(-exponent)))
+        if exponent == 0.5:
+            return self.unary("sqrt", a)
+        if exponent is not None and exponent <= 64 and exponent == int(exponent):
+            return self._whole_power(a, int(exponent))
         return self._node("pow", (a, b))
 
     def _whole_power(self, a: int, exponent: int) -> int:
@@ -175,10 +191,7 @@ class Graph:
         """Return a function of one argument, a name of `UNARY`."""
         x = self.value(a)
         if x is not None:
-            try:
-                return self.constant(UNARY[name](x))
-            except (ValueError, OverflowError):
-                return self._node(name, (a,))
+            return self._folded(name, (a,), lambda: UNARY[name](x))
         if self.ops[a][0] == "neg" and name in {"sin", "tan", "asin", "atan", "sinh", "tanh"}:
             return self.neg(self.unary(name, self.ops[a][1][0]))
         return self._node(name, (a,))

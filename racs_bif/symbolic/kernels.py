@@ -15,14 +15,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-def _pow_float(a: float, b: float) -> float:
-    return math.pow(a, b)
-
-
 SCALAR: Final = SimpleNamespace(
     **UNARY,
-    pow=_pow_float,
+    pow=math.pow,
     where=lambda condition, a, b: a if condition else b,
+    absorb=lambda a, b: a * b if b else 0.0,
     both=lambda a, b: a and b,
     either=lambda a, b: a or b,
     negated=lambda a: not a,
@@ -30,10 +27,10 @@ SCALAR: Final = SimpleNamespace(
 """Elementary functions of floats."""
 
 
-def _array_erf(x: Any) -> Any:
+def _array_erf(x: NDArray[np.float64]) -> NDArray[np.float64]:
     from scipy.special import erf
 
-    return erf(x)
+    return np.asarray(erf(x))
 
 
 _NUMPY_NAMES: Final = {
@@ -49,6 +46,7 @@ ARRAY: Final = SimpleNamespace(
     **{name: _NUMPY_NAMES.get(name) or getattr(np, name) for name in UNARY},
     pow=lambda a, b: np.power(np.asarray(a, dtype=float), b),
     where=np.where,
+    absorb=lambda a, b: np.where(np.equal(b, 0.0), 0.0, a * b),
     both=np.logical_and,
     either=np.logical_or,
     negated=np.logical_not,
@@ -67,7 +65,7 @@ def build(text: str, name: str) -> tuple[dict[str, Any], Functions, Functions]:
         Its ``META``, its functions on floats and its functions on arrays.
     """
     namespace: dict[str, Any] = {}
-    exec(compile(text, f"<racs_bif {name}>", "exec"), namespace)  # noqa: S102 - our own text
+    exec(compile(text, f"<racs_bif {name}>", "exec"), namespace)  # our own text
     make = namespace["make"]
     return namespace["META"], make(SCALAR), make(ARRAY)
 
@@ -106,10 +104,11 @@ class Kernel:
         array (outputs,) or (outputs, N)
             Not finite where the equations are not defined.
         """
+        p, groups = _floats(p), tuple(map(_floats, groups))
         if p.ndim == 1 and all(g.ndim == 1 for g in groups):
             try:
-                return np.array(
-                    self._scalar(self._prepared(p), *[g.tolist() for g in groups]), dtype=None
+                return _floats(
+                    np.array(self._scalar(self._prepared(p), *[g.tolist() for g in groups]))
                 )
             except (ArithmeticError, ValueError):
                 pass  # undefined on floats: arrays tell where, by NaN or infinity
@@ -122,9 +121,17 @@ class Kernel:
             self._key = key
         return self._constants
 
+    def _constants_for(self, p: NDArray[Any]) -> tuple[Any, ...]:
+        if p.ndim == 1:
+            try:
+                return self._prepared(p)
+            except (ArithmeticError, ValueError):
+                pass  # as above
+        return tuple(self._prepare_array(p))
+
     def _on_arrays(self, p: NDArray[Any], groups: tuple[NDArray[Any], ...]) -> NDArray[Any]:
         with np.errstate(all="ignore"):
-            results = self._array(self._prepare_array(p), *groups)
+            results = self._array(self._constants_for(p), *groups)
         points = {a.shape[1] for a in (p, *groups) if a.ndim == 2}
         shape = (len(results), *points)
         kind = complex if any(np.iscomplexobj(g) for g in groups) else float
@@ -132,3 +139,8 @@ class Kernel:
         for k, row in enumerate(results):
             out[k] = row
         return out
+
+
+def _floats(values: NDArray[Any]) -> NDArray[Any]:
+    """Return whole numbers as floats, others as they are."""
+    return values if values.dtype.kind in "fc" else values.astype(float)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final
 
@@ -12,12 +13,11 @@ if TYPE_CHECKING:
 
     from racs_bif.symbolic.graph import Graph
 
-_FUNCTIONS: Final = {"Abs": "fabs", "sign": "sign"} | {
-    name: name
-    for name in (
-        "exp log sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh erf"
-    ).split()
-}
+_SAME_NAMES: Final = (
+    *("exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh"),
+    *("asinh", "acosh", "atanh", "erf", "sign"),
+)
+_FUNCTIONS: Final = {name: name for name in _SAME_NAMES} | {"Abs": "fabs"}
 _RELATIONS: Final = {
     "StrictLessThan": "lt",
     "LessThan": "le",
@@ -44,7 +44,7 @@ class Lowering:
     Raises
     ------
     ModelError
-        For a function or an object that cannot be evaluated on real numbers.
+        For a function, a number or an object that cannot be evaluated on real numbers.
     """
 
     def __init__(self, graph: Graph, symbols: Mapping[str, int], fixed: set[int]) -> None:
@@ -69,8 +69,8 @@ class Lowering:
     def _lower(self, e: sp.Basic) -> int:
         if e.is_Symbol:
             return self.symbols[e.name]
-        if e.is_number and e.is_real is not False and not e.free_symbols and e.is_finite:
-            return self.graph.constant(float(e))
+        if e.is_number:
+            return self.graph.constant(_real(e))
         kind = type(e).__name__
         if kind in _FUNCTIONS:
             return self.graph.unary(_FUNCTIONS[kind], self(e.args[0]))
@@ -155,3 +155,15 @@ class Lowering:
         at_zero = self(e.args[1]) if len(e.args) > 1 else g.constant(0.5)
         beyond = g.where(g.compare("gt", x, g.zero), g.one, at_zero)
         return g.where(g.compare("lt", x, g.zero), g.zero, beyond)
+
+
+def _real(number: sp.Expr) -> float:
+    """Return a number as a float, refusing what is infinite, complex or too large."""
+    try:
+        value = float(number)
+    except (TypeError, ValueError, OverflowError):
+        value = math.nan
+    if not math.isfinite(value):
+        msg = f"'{str(number)[:60]}' is not a finite real number; write the term another way"
+        raise ModelError(msg)
+    return value

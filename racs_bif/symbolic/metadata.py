@@ -54,8 +54,8 @@ def _parameter(parameter: Parameter) -> dict[str, Any]:
     if isinstance(default, Calibration):
         default = {
             "parameter": default.parameter,
-            "hopf": dict(default.hopf),
-            "span": list(default.span),
+            "hopf": {name: float(value) for name, value in default.hopf.items()},
+            "span": [float(bound) for bound in default.span],
             "options": dict(default.options),
         }
     else:

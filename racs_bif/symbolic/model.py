@@ -8,7 +8,8 @@ from __future__ import annotations
 import keyword
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from racs_bif.errors import ModelError, ParameterError, nearest
@@ -149,7 +150,8 @@ class Model:
     Raises
     ------
     ModelError
-        If a symbol is unknown, a name is used twice or cannot be used, or shapes do not fit.
+        If a symbol is unknown, a name is used twice or cannot be used, a number is not finite, or
+        shapes do not fit.
     """
 
     name: str
@@ -179,22 +181,17 @@ class Model:
         for key in ("equations", "outputs"):
             mapping = {k: _expression(self.name, k, v) for k, v in dict(getattr(self, key)).items()}
             freeze(self, key, mapping)
-        freeze(
-            self,
-            "elements",
-            tuple(
-                FractionalElement(
-                    e.output,
-                    _expression(self.name, f"input of {e.output}", e.input),
-                    _expression(self.name, f"law of {e.output}", e.law),
-                )
-                for e in self.elements
-            ),
+        freeze(self, "elements", tuple(_element(self.name, e) for e in self.elements))
+        derived = (
+            replace(d, expression=_expression(self.name, d.name, d.expression))
+            for d in self.derived
         )
+        freeze(self, "derived", tuple(derived))
         if self.mass is not None:
             freeze(self, "mass", sp.ImmutableMatrix(self.mass))
         self._check_names()
         self._check_parts()
+        self._check_numbers()
         self._check_symbols()
 
     @property
@@ -205,6 +202,7 @@ class Model:
     def _check_names(self) -> None:
         names = [*self.equations, *(p.name for p in self.parameters)]
         names += [e.output for e in self.elements] + [d.name for d in self.derived]
+        names += self.outputs
         seen: set[str] = set()
         for name in names:
             if not isinstance(name, str) or not name.isidentifier() or keyword.iskeyword(name):
@@ -215,7 +213,7 @@ class Model:
                 raise ModelError(msg)
             seen.add(name)
         if LAPLACE in seen and self.elements:
-            msg = f"model '{self.name}': 's' is the Laplace variable of the laws; rename '{LAPLACE}'"
+            msg = f"model '{self.name}': '{LAPLACE}' is the Laplace variable of the laws; rename it"
             raise ModelError(msg)
 
     def _check_parts(self) -> None:
@@ -240,8 +238,23 @@ class Model:
         known = [*self.states, *(e.output for e in self.elements)]
         for name in self.guess:
             if name not in known:
-                msg = f"model '{self.name}': guess for unknown state '{name}'; {nearest(name, known)}"
+                hint = nearest(name, known)
+                msg = f"model '{self.name}': guess for unknown state '{name}'; {hint}"
                 raise ModelError(msg)
+
+    def _check_numbers(self) -> None:
+        numbers: dict[str, object] = {f"guess of '{k}'": value for k, value in self.guess.items()}
+        for p in self.parameters:
+            if not isinstance(p.default, Calibration):
+                numbers[f"default of '{p.name}'"] = p.default
+        for what, value in numbers.items():
+            if not isinstance(value, Real) or not math.isfinite(float(value)):
+                msg = f"model '{self.name}': the {what} is {value!r}, it must be a finite number"
+                raise ModelError(msg)
+        low, high = self.band
+        if not 0.0 < low < high < math.inf:
+            msg = f"model '{self.name}': band {low:g} .. {high:g} rad/s; give 0 < LOW < HIGH"
+            raise ModelError(msg)
 
     def _check_symbols(self) -> None:
         base = {p.name for p in self.parameters}
@@ -262,6 +275,14 @@ class Model:
                         f"{nearest(symbol.name, sorted(allowed))}"
                     )
                     raise ModelError(msg)
+
+
+def _element(model: str, element: FractionalElement) -> FractionalElement:
+    return FractionalElement(
+        element.output,
+        _expression(model, f"input of {element.output}", element.input),
+        _expression(model, f"law of {element.output}", element.law),
+    )
 
 
 def _expression(model: str, place: str, value: object) -> sp.Expr:

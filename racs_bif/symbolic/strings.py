@@ -7,7 +7,7 @@ import math
 import operator
 import unicodedata
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from racs_bif.errors import ModelError, nearest
@@ -104,25 +104,33 @@ def _check_tables(name: str, *tables: object) -> None:
             msg = f"model '{name}': give names and expressions as a dict, not as {kind}"
             raise ModelError(msg)
         for key in table or ():
-            if key in _CONSTANTS:
-                msg = f"model '{name}': '{key}' is a constant; rename it"
-                raise ModelError(msg)
+            _check_name(name, key)
+
+
+def _check_name(model: str, name: object) -> None:
+    if not isinstance(name, str):
+        msg = f"model '{model}': {name!r} cannot be a name; give a string"
+        raise ModelError(msg)
+    if name in _CONSTANTS:
+        msg = f"model '{model}': '{name}' is a constant; rename it"
+        raise ModelError(msg)
 
 
 def _plain(name: str) -> str:
     """Return a name as Python's tokeniser spells it (the micro sign becomes a Greek mu)."""
-    return unicodedata.normalize("NFKC", name) if isinstance(name, str) else name
+    return unicodedata.normalize("NFKC", name)
 
 
 def _parsed(table: Mapping[str, str]) -> dict[str, sp.Expr]:
     return {_plain(name): parse(text) for name, text in table.items()}
 
 
-def _element(name: str, element: tuple[str, str, str]) -> FractionalElement:
+def _element(name: str, element: Sequence[str]) -> FractionalElement:
     if isinstance(element, str) or len(element) != 3:
         msg = f"model '{name}': an element is (output, input, law), not {element!r}"
         raise ModelError(msg)
     output, source, law = element
+    _check_name(name, output)
     return FractionalElement(_plain(output), parse(source), parse(law))
 
 
@@ -137,8 +145,8 @@ def _number(name: str, key: str, value: float) -> float:
 def parse(text: str) -> sp.Expr:
     """Return the sympy expression of an arithmetic expression.
 
-    Numbers, names, ``+ - * / ** ^``, ``a if c else b`` with a comparison c, and elementary functions
-    are understood, nothing else.
+    Numbers, names, ``+ - * / ** ^``, ``a if c else b`` with a comparison c, and elementary
+    functions are understood, nothing else.
 
     Raises
     ------
@@ -150,12 +158,7 @@ def parse(text: str) -> sp.Expr:
     >>> parse("2*x**2 + sin(pi*t)")
     2*x**2 + sin(pi*t)
     """
-    if not isinstance(text, str):
-        msg = f"an expression must be a string, not {type(text).__name__}"
-        raise ModelError(msg)
-    if len(text) > _LONGEST:
-        msg = f"an expression of {len(text)} characters is too long; split it"
-        raise ModelError(msg)
+    _check_text(text)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of Python's tokeniser: what matters is refused below
@@ -169,6 +172,15 @@ def parse(text: str) -> sp.Expr:
     except (SyntaxError, ValueError, TypeError, ArithmeticError):
         msg = f"'{_short(text)}' is not an arithmetic expression; check brackets and operators"
         raise ModelError(msg) from None
+
+
+def _check_text(text: object) -> None:
+    if not isinstance(text, str):
+        msg = f"an expression must be a string, not {type(text).__name__}"
+        raise ModelError(msg)
+    if len(text) > _LONGEST:
+        msg = f"an expression of {len(text)} characters is too long; split it"
+        raise ModelError(msg)
 
 
 class _Reader:
@@ -204,6 +216,9 @@ class _Reader:
             raise ModelError(msg)
         if isinstance(node.value, int):
             return sp.Integer(node.value)
+        if not math.isfinite(node.value):
+            msg = f"a number in '{_short(self.text)}' is too large"
+            raise ModelError(msg)
         return sp.Float(repr(node.value))
 
     def _name(self, node: ast.Name) -> sp.Expr:
@@ -278,4 +293,6 @@ class _Reader:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= 60 else text[:57] + "..."
+    """Return a text fit for one line of a message."""
+    line = "".join(c if c.isprintable() else " " for c in text)
+    return line if len(line) <= 60 else line[:57] + "..."

@@ -82,19 +82,50 @@ def continue_equilibria(  # noqa: PLR0913 - each is one choice of the user's
     """
     system = system_of(model)
     low, high = check_span(system, parameter, span)
-    path = system.path(parameter)
-    problem = EquilibriumProblem(system.field, path, _outputs(system))
-    detectors = [Fold(), BranchPoint(), Hopf(len(system.states))]
-    found = trace(
+    problem = equilibrium_problem(system, parameter)
+    start = starting_point(system, parameter, (low, high))
+    wanted, chosen = tuple(at), settings or StepSettings()
+    own = len(system.states)
+    found = follow(problem, start, (low, high), chosen, own=own, at=wanted, progress=progress)
+    return as_branch(system, problem, found, (low, high))
+
+
+def equilibrium_problem(system: System, parameter: str) -> EquilibriumProblem:
+    """Return the equilibria of a system along one parameter, its outputs as measures."""
+    return EquilibriumProblem(system.field, system.path(parameter), _outputs(system))
+
+
+def follow(  # noqa: PLR0913 - what a branch is made of
+    problem: EquilibriumProblem,
+    z: Array,
+    span: tuple[float, float],
+    settings: StepSettings,
+    *,
+    own: int | None = None,
+    at: tuple[float, ...] = (),
+    tangent: Array | None = None,
+    progress: Callable[[Point], None] | None = None,
+) -> Trace:
+    """Trace the branch of equilibria through z with the detectors of its special points.
+
+    Parameters
+    ----------
+    problem, z, span, settings, at, tangent, progress
+        As for `racs_bif.continuation.trace.trace`.
+    own : int, optional
+        Number of the model's own states; all where left out.
+    """
+    detectors = [Fold(), BranchPoint(), Hopf(len(z) - 1 if own is None else own)]
+    return trace(
         problem,
-        _start(system, parameter, (low, high)),
-        (low, high),
+        z,
+        span,
         detectors,
-        settings or StepSettings(),
-        targets=tuple(at),
+        settings,
+        targets=at,
+        tangent=tangent,
         progress=progress,
     )
-    return _branch(system, problem, found, (low, high))
 
 
 def check_span(
@@ -133,7 +164,7 @@ def _outputs(system: System) -> Callable[[Array, Array], dict[str, float]]:
     return outputs
 
 
-def _start(system: System, parameter: str, span: tuple[float, float]) -> Array:
+def starting_point(system: System, parameter: str, span: tuple[float, float]) -> Array:
     """Return an equilibrium within the span: at the parameter's own value, an end or the middle."""
     low, high = span
     own = system.parameters[parameter]
@@ -149,9 +180,10 @@ def _start(system: System, parameter: str, span: tuple[float, float]) -> Array:
     raise AssertionError  # the loop returns or raises
 
 
-def _branch(
+def as_branch(
     system: System, problem: EquilibriumProblem, found: Trace, span: tuple[float, float]
 ) -> Branch:
+    """Return a traced branch of equilibria as a result, its Hopf points checked on the exact model."""
     sentence, early = assemble.stopped(found)
     named = [(raw, _special(system, problem, raw, span)) for raw in found.special]
     states = np.array([p.z[:-1] for p in found.points])

@@ -64,7 +64,7 @@ def written():
 
 @pytest.fixture(scope="session")
 def hopf(written):
-    """x' = lam x - w y - x r^2, y' = w x + lam y - y r^2: circle of radius sqrt(lam), period 2 pi/w."""
+    """A circle of radius sqrt(lam), period 2 pi / w, multipliers 1 and exp(-2 lam T)."""
     return written(
         {"x": "lam*x - w*y - x*(x**2 + y**2)", "y": "w*x + lam*y - y*(x**2 + y**2)"},
         lam=0.25,
@@ -115,7 +115,12 @@ def stiff_linear(written):
     rng = np.random.default_rng(3)
     mix = np.eye(4) + 0.2 * rng.standard_normal((4, 4))
     core = np.array(
-        [[-0.5, 3.0, 0.0, 0.0], [-3.0, -0.5, 0.0, 0.0], [0.0, 0.0, -1e2, 0.0], [0.0, 0.0, 0.0, -1e4]]
+        [
+            [-0.5, 3.0, 0.0, 0.0],
+            [-3.0, -0.5, 0.0, 0.0],
+            [0.0, 0.0, -1e2, 0.0],
+            [0.0, 0.0, 0.0, -1e4],
+        ]
     )
     a = mix @ core @ np.linalg.inv(mix)
     names = ["x1", "x2", "x3", "x4"]

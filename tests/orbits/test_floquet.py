@@ -45,7 +45,7 @@ def test_the_trivial_multiplier_is_the_one_along_the_flow():
     frame = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
     core = np.diag([1.0 + 1e-4, 1.0 - 1e-7, 0.5])
     block = (frame @ core @ frame.T)[None]
-    found = floquet(block, velocity=frame[:, 0])
+    found = floquet(block, velocities=frame[None, :, 0])
     assert found.trivial_error == pytest.approx(1e-4, rel=1e-8)
     assert found.multipliers[1].real == pytest.approx(1.0 - 1e-7, abs=1e-13)
     assert floquet(block).trivial_error == pytest.approx(1e-7, rel=1e-5)

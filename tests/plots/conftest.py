@@ -14,3 +14,8 @@ def diagram():
 @pytest.fixture
 def crowded():
     return _KNOWN["many_points"]()
+
+
+@pytest.fixture
+def steep():
+    return _KNOWN["steep"]()

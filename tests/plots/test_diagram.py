@@ -7,6 +7,7 @@ import pytest
 from matplotlib import colors
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from racs_bif.errors import UsageError
 from racs_bif.plots.diagram import draw, picture
@@ -106,32 +107,48 @@ def test_unknown_stability_is_dotted(diagram, ax):
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["equilibrium, unknown"]
 
 
-def _boxes(figure):
+def _parts(figure):
+    """The axes, the boxes of its labels, and the box of the legend, in pixels."""
     figure.draw_without_rendering()
-    return [text.get_window_extent() for text in figure.axes[0].texts]
+    (ax,) = figure.axes
+    (legend,) = [*figure.legends, *([ax.get_legend()] if ax.get_legend() else [])]
+    # Without the lines that lead to the points.
+    texts = [Text.get_window_extent(note) for note in ax.texts]
+    return ax, texts, legend.get_window_extent()
 
 
-@pytest.mark.parametrize("which", ["diagram", "crowded"])
-def test_labels_cover_neither_each_other_nor_the_legend_nor_the_frame(which, request):
-    figure = picture(request.getfixturevalue(which))
-    boxes = _boxes(figure)
-    assert len(boxes) == {"diagram": 2, "crowded": 5}[which]
+CASES = pytest.mark.parametrize(("which", "count"), [("diagram", 2), ("crowded", 5), ("steep", 6)])
+
+
+@CASES
+def test_labels_cover_neither_each_other_nor_the_legend_nor_the_frame(which, count, request):
+    ax, boxes, legend = _parts(picture(request.getfixturevalue(which)))
+    assert len(boxes) == count
     assert not any(one.overlaps(two) for one, two in combinations(boxes, 2))
-    ax = figure.axes[0]
-    legend = ax.get_legend().get_window_extent()
     assert not any(box.overlaps(legend) for box in boxes)
     assert all(ax.bbox.x0 < box.x0 and box.x1 < ax.bbox.x1 for box in boxes)
+    assert all(ax.bbox.y0 < box.y0 and box.y1 < ax.bbox.y1 for box in boxes)
 
 
-@pytest.mark.parametrize("which", ["diagram", "crowded"])
-def test_the_legend_covers_no_curve(which, request):
+@CASES
+def test_labels_cover_no_special_point(which, count, request):
+    ax, boxes, _ = _parts(picture(request.getfixturevalue(which)))
+    points = [ax.transData.transform(note.xy) for note in ax.texts]
+    assert len(points) == count
+    assert not any(box.contains(*point) for box in boxes for point in points)
+
+
+@CASES
+def test_the_legend_covers_no_curve_and_is_on_the_page(which, count, request):
+    del count
     figure = picture(request.getfixturevalue(which))
-    figure.draw_without_rendering()
-    ax = figure.axes[0]
-    legend = ax.get_legend().get_window_extent()
+    ax, _, legend = _parts(figure)
     for line in ax.get_lines():
         pixels = line.get_transform().transform(line.get_xydata())
         assert not any(legend.contains(*pixel) for pixel in pixels)
+    assert figure.bbox.x0 <= legend.x0
+    assert legend.x1 <= figure.bbox.x1
+    assert ax.bbox.width > 0.6 * figure.bbox.width  # the legend has not pushed the axes aside
 
 
 def test_a_picture_has_the_width_of_a_column_and_300_dots_per_inch(diagram, tmp_path):

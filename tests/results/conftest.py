@@ -152,6 +152,26 @@ def many_points():
     return Diagram(replace(branch, labels=labels, special=special))
 
 
+def steep():
+    """Return a diagram of the vehicle's kind: a cluster of special points and no free corner."""
+    orbit = orbits()
+    places = {20: "LPC", 21: "LPC", 22: "NS", 23: "PD", 24: "PD"}
+    labels = [places.get(k, "") for k in range(len(orbit))]
+    u = orbit.parameter.copy()
+    u[20:25] = [21.25, 21.19, 21.3, 21.6, 21.9]
+    u[25:] = np.linspace(22, 30, len(u) - 25)
+    special = [
+        SpecialPoint(label=kind, name=f"{kind}{k}", branch="PO1", index=k, parameters={"u": u[k]})
+        for k, kind in places.items()
+    ]
+    low = orbit.measures["min delta_c"]
+    ends = {"min delta_c": np.where(u < 21, low, -0.7 + 0.01 * u)}
+    measures = {**orbit.measures, **ends}
+    return Diagram(
+        equilibria(), replace(orbit, labels=labels, special=special, values=u, measures=measures)
+    )
+
+
 @pytest.fixture
 def branch():
     return equilibria()

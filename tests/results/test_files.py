@@ -58,7 +58,8 @@ def test_the_file_opens_in_xarray_with_units(diagram, tmp_path):
         assert data["period"].attrs["units"] == "s"
         assert "multipliers" in data
     with xr.open_dataset(path, group="PO1/profiles/NS1", engine="h5netcdf") as data:
-        assert data["v"].dims == ("time",)
+        assert data["states"].dims == ("time", "state")
+        assert list(data["states"].attrs["units"]) == ["m/s", "rad"]
 
 
 def _tampered(path, change):

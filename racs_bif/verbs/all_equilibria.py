@@ -1,0 +1,172 @@
+"""Every branch of equilibria that can be found: crossing branches, and those that nothing leads to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from racs_bif.continuation.points import Point, Trace
+from racs_bif.continuation.settings import StepSettings
+from racs_bif.continuation.trace import trace
+from racs_bif.equilibria.deflation import other_equilibria, same_state
+from racs_bif.errors import ConvergenceError
+from racs_bif.fractional.system import System
+from racs_bif.numerics.threads import single_threaded
+from racs_bif.results.diagram import Diagram
+from racs_bif.shelf.load import system_of
+from racs_bif.symbolic.field import Array
+from racs_bif.symbolic.model import Model
+from racs_bif.verbs.equilibria import (
+    as_branch,
+    check_span,
+    equilibrium_problem,
+    follow,
+    starting_point,
+)
+
+_PROBES = 6
+_SPREADS = (1.0, 10.0, 100.0)
+_STRAY = 1e4
+
+
+@dataclass
+class _Search:
+    """What has been found so far."""
+
+    system: System
+    parameter: str
+    span: tuple[float, float]
+    settings: StepSettings
+    at: tuple[float, ...]
+    progress: Callable[[Point], None] | None
+    traces: list[Trace] = field(default_factory=list)
+
+    def follow(self, z: Array, tangent: Array | None = None) -> None:
+        """Trace the branch through z, and then every branch that crosses it."""
+        problem = equilibrium_problem(self.system, self.parameter)
+        found = follow(
+            problem,
+            z,
+            self.span,
+            self.settings,
+            own=len(self.system.states),
+            at=self.at,
+            tangent=tangent,
+            progress=self.progress,
+        )
+        if len(found.points) < 2 or self._known(found):
+            return
+        self.traces.append(found)
+        for special in found.special:
+            if special.label == "BP":
+                self.follow(special.z, np.asarray(special.data["other_tangent"]))
+
+    def states_at(self, value: float) -> list[Array]:
+        """Return the equilibria X = (y, w) that known branches pass at a value."""
+        return [X for found in self.traces for X in self._crossings(found, value)]
+
+    def _crossings(self, found: Trace, value: float) -> Iterator[Array]:
+        p = self.system.path(self.parameter).vector(value)
+        for a, b in zip(found.points, found.points[1:], strict=False):
+            low, high = sorted((a.parameter, b.parameter))
+            if not low <= value <= high:
+                continue
+            share = 0.0 if high == low else (value - a.parameter) / (b.parameter - a.parameter)
+            x = (1.0 - share) * a.z[:-1] + share * b.z[:-1]
+            try:
+                yield self.system.exact.equilibrium(self.system.exact_point(x, p), p)
+            except ConvergenceError:
+                continue
+
+    def _known(self, found: Trace) -> bool:
+        """Say whether a branch was traced before, from its point in the middle."""
+        middle = found.points[len(found.points) // 2]
+        p = self.system.path(self.parameter).vector(middle.parameter)
+        X = self.system.exact_point(middle.z[:-1], p)
+        scale = _scale([X])
+        return any(same_state(X, Y, scale) for Y in self.states_at(middle.parameter))
+
+    def probe(self, value: float) -> None:
+        """Look for equilibria at a value that no known branch passes, and follow them."""
+        p = self.system.path(self.parameter).vector(value)
+        for spread in _SPREADS:
+            known = self.states_at(value)
+            if not known:
+                return
+            scale = _scale(known)
+            origin = np.zeros_like(scale)
+            new = other_equilibria(self.system.exact, p, known, [origin], spread * scale)
+            for X in new:
+                if np.max(np.abs(X) / scale) > _STRAY:
+                    continue
+                ny = len(self.system.states)
+                x = self.system.field.rest(X[:ny], X[ny:], p)
+                if not any(same_state(X, Y, scale) for Y in self.states_at(value)):
+                    self.follow(np.append(x, value))
+
+
+def _scale(states: Sequence[Array]) -> Array:
+    """Return a typical size of each unknown, none smaller than a hundredth of the largest."""
+    size = np.max(np.abs(np.array(states)), axis=0)
+    return np.maximum(size, 1e-2 * max(float(size.max()), 1e-6))
+
+
+@single_threaded
+def all_equilibria(  # noqa: PLR0913 - each is one choice of the user's
+    model: Model | System,
+    parameter: str,
+    span: tuple[float, float],
+    *,
+    at: Sequence[float] = (),
+    settings: StepSettings | None = None,
+    probes: int = _PROBES,
+    progress: Callable[[Point], None] | None = None,
+) -> Diagram:
+    """Follow every branch of equilibria in a span that can be found.
+
+    From the branch through the model's guess all branches are followed that cross it at branch
+    points; then deflated Newton's method looks for further equilibria at several values of the
+    parameter. That there are no others is not proved.
+
+    Parameters
+    ----------
+    model : Model or System
+        What is followed.
+    parameter : str
+        Active parameter.
+    span : (float, float)
+        Its interval, SI.
+    at : sequence of float
+        Values at which points are wanted exactly.
+    settings : StepSettings, optional
+        Step control.
+    probes : int
+        Number of parameter values, evenly spaced over the span, at which further equilibria are
+        looked for; 0 follows only branches that are connected to the first.
+    progress : callable, optional
+        Called with every new point.
+
+    Returns
+    -------
+    Diagram
+        EQ1 is the branch through the model's guess; special points are numbered through.
+
+    Raises
+    ------
+    UsageError, ParameterError, ConvergenceError
+        As `continue_equilibria`.
+    """
+    system = system_of(model)
+    low, high = check_span(system, parameter, span)
+    chosen = settings or StepSettings()
+    search = _Search(system, parameter, (low, high), chosen, tuple(at), progress)
+    search.follow(starting_point(system, parameter, (low, high)))
+    if probes:
+        inset = 1e-3 * (high - low)
+        for value in np.linspace(low + inset, high - inset, probes):
+            search.probe(float(value))
+    problem = equilibrium_problem(system, parameter)
+    branches = [as_branch(system, problem, found, (low, high)) for found in search.traces]
+    return Diagram(*branches)

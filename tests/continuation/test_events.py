@@ -1,0 +1,159 @@
+"""Events: which there are, where, and which are none."""
+
+import math
+
+import numpy as np
+import pytest
+
+from racs_bif.continuation import trace
+
+TRUE = 0.31
+
+
+def found(branch):
+    return [special.z[1] for special in branch.special]
+
+
+@pytest.mark.parametrize(
+    "real_parts",
+    [
+        # Opposite directions: the number of unstable eigenvalues is the same before and after.
+        (lambda p: p - TRUE, lambda p: TRUE + 1e-3 - p),
+        # The same direction: the test function keeps its sign.
+        (lambda p: p - TRUE, lambda p: p - TRUE - 1e-3),
+        # One pair, out and in again.
+        (lambda p: (TRUE - p) * (p - TRUE - 1e-3),),
+        (lambda p: (p - TRUE) * (p - TRUE - 1e-3), lambda p: -2.0),
+    ],
+)
+def test_two_crossings_within_one_step_are_both_found(kinds, real_parts):
+    branch = trace(kinds.Pairs(*real_parts), [0, 0], (-1, 1), [kinds.Hopf()])
+    np.testing.assert_allclose(found(branch), [TRUE, TRUE + 1e-3], atol=1e-10)
+    assert branch.message == ""
+
+
+@pytest.mark.parametrize("gap", [8e-5, 1e-6])
+def test_crossings_very_near_each_other(kinds, gap):
+    problem = kinds.Pairs(lambda p: p - TRUE, lambda p: TRUE + gap - p, lambda p: -1.0)
+    branch = trace(problem, [0, 0], (-1, 1), [kinds.Hopf()])
+    np.testing.assert_allclose(found(branch), [TRUE, TRUE + gap], atol=1e-10)
+
+
+def test_crossings_that_no_detector_sees_are_told(kinds):
+    problem = kinds.Pairs(lambda p: p - TRUE)
+    branch = trace(problem, [0, 0], (-1, 1), [kinds.Fold()])
+    assert branch.special == []
+    assert "from 0 to 2" in branch.message
+    assert "0.3" in branch.message
+
+
+def test_opposite_crossings_at_one_place_are_told(kinds):
+    problem = kinds.Pairs(lambda p: p - TRUE, lambda p: TRUE - p)
+    branch = trace(problem, [0, 0], (-1, 1), [kinds.Hopf()])
+    assert "4 eigenvalues cross" in branch.message
+
+
+def test_without_detectors_nothing_is_checked(kinds):
+    branch = trace(kinds.Pairs(lambda p: p - TRUE), [0, 0], (-1, 1))
+    assert branch.message == ""
+
+
+def test_event_of_another_kind_is_dropped_and_explains_nothing(kinds):
+    class Picky(kinds.Hopf):
+        def data(self, problem, point):
+            return None
+
+    branch = trace(kinds.Pairs(lambda p: p - TRUE), [0, 0], (-1, 1), [Picky()])
+    assert branch.special == []
+    assert "unexplained" in branch.message
+
+
+def test_several_events_in_a_step_are_sorted_and_numbered(kinds, line):
+    first, second = kinds.Given(lambda z: z[1] - 0.5002), kinds.Given(lambda z: 0.5001 - z[1])
+    second.label = "K"
+    third = kinds.Given(lambda z: z[1] - 0.5003)
+    branch = trace(line, [0, 0], (0, 1), [first, second, third])
+    assert [special.name for special in branch.special] == ["K1", "G1", "G2"]
+    np.testing.assert_allclose(found(branch), [0.5001, 0.5002, 0.5003], atol=1e-10)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.2, 0.5, 1.0])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_zero_at_the_start_or_an_end_counts_once(kinds, line, start, sign):
+    for zero in (0.0, 0.5, 1.0):
+        detector = kinds.Given(lambda z, zero=zero: sign * (z[1] - zero))
+        branch = trace(line, [start, start], (0, 1), [detector])
+        assert found(branch) == pytest.approx([zero], abs=1e-10)
+
+
+def test_zero_at_an_accepted_point_counts_once(kinds, line):
+    accepted = trace(line, [0, 0], (0, 1)).points[7].z[1]
+    branch = trace(line, [0, 0], (0, 1), [kinds.Given(lambda z: z[1] - accepted)])
+    assert found(branch) == [accepted]
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda z: (z[1] - 0.5) ** 2,
+        lambda z: z[1] ** 2 - z[1] + 0.25,
+        lambda z: (z[1] - 0.4321) ** 4,
+        lambda z: 0.0,
+        lambda z: math.nan,
+        lambda z: 1e-17 * math.cos(1e17 * z[1]),
+        lambda z: abs(z[1] - 0.5) + 1e-17 * math.cos(1e17 * z[1]),
+        lambda z: math.nan if 0.4 < z[1] < 0.6 else z[1] - 0.5,
+        lambda z: z[0] - z[1],
+    ],
+)
+@pytest.mark.parametrize("start", [0.0, 0.5])
+def test_touching_rounding_and_nan_are_no_events(kinds, line, function, start):
+    branch = trace(line, [start, start], (0, 1), [kinds.Given(function)])
+    assert branch.special == []
+
+
+def test_events_at_the_zero_of_a_flat_test_function(kinds, line):
+    branch = trace(line, [0, 0], (0, 1), [kinds.Given(lambda z: (z[1] - 0.4321) ** 3)])
+    assert found(branch) == pytest.approx([0.4321], abs=1e-4)
+
+
+def test_step_function_is_located(kinds, line):
+    detector = kinds.Given(lambda z: math.copysign(1.0, z[1] - 0.4321))
+    branch = trace(line, [0, 0], (0, 1), [detector])
+    assert found(branch) == pytest.approx([0.4321], abs=1e-10)
+    assert 0 < branch.special[0].interval < 1e-10
+
+
+def test_refinement_is_used_where_it_is_near(kinds, line):
+    class Polished(kinds.Given):
+        shift = 0.0
+
+        def refine(self, problem, special):
+            return np.full(2, 0.25 + self.shift)
+
+        def data(self, problem, point):
+            return {"at": point.z[1]}
+
+    detector = Polished(lambda z: z[1] - 0.25 - 1e-7)
+    branch = trace(line, [0, 0], (0, 1), [detector])
+    assert found(branch) == [0.25]
+    assert branch.special[0].data == {"at": 0.25}
+    Polished.shift = 0.3
+    branch = trace(line, [0, 0], (0, 1), [detector])
+    assert found(branch) == pytest.approx([0.25 + 1e-7], abs=1e-10)
+
+
+def test_failing_description_keeps_the_event_and_is_told(kinds, line):
+    class Failing(kinds.Given):
+        def data(self, problem, point):
+            msg = "no normal form"
+            raise np.linalg.LinAlgError(msg)
+
+    branch = trace(line, [0, 0], (0, 1), [Failing(lambda z: z[1] - 0.25)])
+    assert branch["G1"].data == {}
+    assert "no normal form" in branch.message
+
+
+def test_tests_are_kept_in_the_points(kinds, line):
+    branch = trace(line, [0, 0], (0, 1), [kinds.Given(lambda z: z[1] - 0.25)], targets=[0.5])
+    assert all(point.tests == {"G": point.z[1] - 0.25} for point in branch.points)

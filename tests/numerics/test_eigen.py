@@ -1,0 +1,17 @@
+"""Matching of eigenvalues."""
+
+import numpy as np
+
+from racs_bif.numerics.eigen import match
+
+
+def test_a_shuffle_is_undone():
+    random = np.random.default_rng(3)
+    before = random.standard_normal(20) + 1j * random.standard_normal(20)
+    order = random.permutation(20)
+    assert np.array_equal(before[match(before, before[order] + 1e-6)], before[np.argsort(order)])
+
+
+def test_two_that_want_the_same_share():
+    before, after = np.array([0.0, 1.0, 5.0]), np.array([0.9, 2.0, 5.0])
+    assert match(before + 0j, after + 0j).tolist() == [0, 1, 2]
