@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from racs_bif.equilibria.calibrate import calibrate
+    from racs_bif.verbs.all_equilibria import all_equilibria
     from racs_bif.verbs.equilibria import continue_equilibria
     from racs_bif.verbs.orbits import continue_orbits
     from racs_bif.results.branch import Branch
@@ -43,6 +44,7 @@ _HOMES: Final = {
     "Model": "racs_bif.symbolic.model",
     "Parameter": "racs_bif.symbolic.model",
     "calibrate": "racs_bif.equilibria.calibrate",
+    "all_equilibria": "racs_bif.verbs.all_equilibria",
     "continue_equilibria": "racs_bif.verbs.equilibria",
     "continue_orbits": "racs_bif.verbs.orbits",
     "load": "racs_bif.results.files",
@@ -59,6 +61,7 @@ __all__ = [
     "FractionalElement",
     "Model",
     "Parameter",
+    "all_equilibria",
     "calibrate",
     "continue_equilibria",
     "continue_orbits",

@@ -16,7 +16,7 @@ from racs_bif.cli.options import (
     check_span,
     open_system,
 )
-from racs_bif.cli.parser import Parser, choice, number
+from racs_bif.cli.parser import Parser, choice, count_or_none, number
 from racs_bif.errors import RacsBifError, UsageError
 
 if TYPE_CHECKING:
@@ -61,6 +61,14 @@ def configure(parser: Parser) -> None:
         metavar="METHOD",
         help="how periodic orbits are followed: shooting (default), or none to leave them out",
     )
+    parser.add_argument(
+        "--probes",
+        type=count_or_none,
+        default=6,
+        metavar="N",
+        help="values of PARAM at which equilibria are looked for that nothing leads to; default 6, "
+        "0 to follow only what is connected to the first",
+    )
     add_model_options(parser)
     add_realisation_options(parser)
     parser.add_argument(
@@ -84,6 +92,7 @@ class Run:
 
     branches: list[Branch] = field(default_factory=list)
     troubles: list[str] = field(default_factory=list)
+    apart: list[str] = field(default_factory=list)
     interrupted: bool = False
     failure: Exception | None = None
 
@@ -138,18 +147,25 @@ def _check_names(arguments: Namespace, system: System) -> None:
 def _compute(arguments: Namespace, system: System, done: Run) -> None:
     """Fill `done` with branches, until all are there or the user interrupts."""
     from racs_bif.cli.terminal import progress
-    from racs_bif.verbs.equilibria import continue_equilibria
+    from racs_bif.verbs.all_equilibria import all_equilibria
 
     name, span, at = arguments.parameter, (arguments.low, arguments.high), tuple(arguments.at)
     with _interruptible(done), progress(arguments) as task:
         report = task("equilibria", span)
-        branch = continue_equilibria(system, name, span, at=at, progress=report)
-        done.branches.append(branch)
+        found = all_equilibria(
+            system, name, span, at=at, probes=arguments.probes, progress=report
+        )
+        done.branches.extend(found)
         if arguments.orbits == "none":
             return
-        for point in branch.special:
-            if point.label == "H" and not done.interrupted:
-                _follow_orbits(point, arguments, done, task)
+        for branch in found:
+            hopf = [point for point in branch.special if point.label == "H"]
+            if branch.connected:
+                for point in hopf:
+                    if not done.interrupted:
+                        _follow_orbits(point, arguments, done, task)
+            else:
+                done.apart.extend(point.name for point in hopf)
 
 
 def _follow_orbits(point: SpecialPoint, arguments: Namespace, done: Run, task: Task) -> None:
@@ -235,6 +251,18 @@ def _tell(diagram: Diagram, arguments: Namespace, summary: str) -> None:
     for note in system.notes:
         screen.print(f"\nNote: {note}")
     screen.print(f"\nWrote {', '.join(FILES)} to {arguments.out.resolve()}", soft_wrap=True)
+
+
+def _tell_apart(done: Run, arguments: Namespace) -> None:
+    """Say which Hopf points no orbits were followed from."""
+    if done.apart:
+        from racs_bif.cli.terminal import console
+
+        names = ", ".join(done.apart)
+        console(arguments).print(
+            f"\nOrbits were not followed from {names}: no branch leads there from the first "
+            "equilibrium. In Python: continue_orbits(point)."
+        )
 
 
 def _close(done: Run, arguments: Namespace) -> int:

@@ -101,6 +101,17 @@ def count(text: str) -> int:
     return int(text)
 
 
+def count_or_none(text: str) -> int:
+    """Return a whole number that is at least 0.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If the text is none.
+    """
+    return 0 if text == "0" else count(text)
+
+
 def choice(*known: str) -> Callable[[str], str]:
     """Return a function that takes one of some words, and names the nearest for any other."""
 

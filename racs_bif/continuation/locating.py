@@ -57,12 +57,12 @@ class Locator:
     def __init__(
         self, builder: Builder, scaling: Scaling, settings: StepSettings, notes: list[str]
     ) -> None:
-        self._builder, self._scaling, self._settings = builder, scaling, settings
+        self._builder, self.scaling, self._settings = builder, scaling, settings
         self._notes = notes
 
     def segment(self, a: Point, b: Point) -> Segment:
         """Return the branch between two points."""
-        return Segment(self._builder, self._scaling, self._settings, a, b)
+        return Segment(self._builder, self.scaling, self._settings, a, b)
 
     def locate(self, segment: Segment, place: int, before: float, after: float) -> Event | None:
         """Return the event at a sign change of a detector, or None if it is not of its kind.
@@ -136,7 +136,7 @@ class Locator:
         )
         try:
             z = detector.refine(problem, special)
-            if z is not None and self._scaling.norm(z - point.z) <= reach:
+            if z is not None and self.scaling.norm(z - point.z) <= reach:
                 polished = self._builder.point(z, point.tangent, point.arclength, point.iterations)
                 data = detector.data(problem, polished)
                 if data is not None:

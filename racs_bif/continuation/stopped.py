@@ -33,6 +33,14 @@ class Stopped(Enum):
         "The discretisation no longer resolves the solution; use more intervals, a finer mesh or "
         "another method."
     )
+    STATIC = (
+        "The frequency of the Hopf points tends to zero, where the exact curve has no continuation; "
+        "look for a fold there."
+    )
+    UNFOLDED = (
+        "Branch points do not persist when the second parameter moves: they unfold into folds, or "
+        "part; follow the folds instead."
+    )
     VANISHED = "The orbit shrank to an equilibrium: look for a Hopf point there."
 
     @property

@@ -123,11 +123,11 @@ def _walk(stepper: Stepper, watch: Watch, progress: Callable[[Point], object] | 
     """Walk in one direction to its end."""
     try:
         while True:
-            before = stepper.point
+            before, norm = stepper.point, stepper.scaling.copy()
             point = stepper.advance()
             if point is None:
                 break
-            watch.feed(before, point)
+            watch.feed(before, point, norm)
             if watch.divided:
                 stepper.step *= 0.5
             if progress is not None:

@@ -36,6 +36,7 @@ class _Pending:
     b: Point
     before: list[float]
     after: list[float]
+    scaling: Scaling
     earlier: tuple[float, list[float]] | None = field(default=None)
 
 
@@ -102,8 +103,8 @@ class Watch:
         self.doubtful = [True] * len(self._values)
         self.divided = False
 
-    def feed(self, a: Point, b: Point) -> None:
-        """Take in the step from a, the last point fed, to b."""
+    def feed(self, a: Point, b: Point, scaling: Scaling) -> None:
+        """Take in the step from a, the last point fed, to b, made in the norm `scaling`."""
         self.divided = False
         self._arrived.append(b)
         values = self._builder.values(b)
@@ -120,7 +121,7 @@ class Watch:
         else:
             self._settle(last, (b.arclength, values))
             earlier = (last.a.arclength, last.before)
-        self._pending = _Pending(a, b, self._values, values, earlier)
+        self._pending = _Pending(a, b, self._values, values, scaling, earlier)
         self._values = values
 
     def finish(self, *, closed: bool) -> None:
@@ -164,6 +165,7 @@ class Watch:
     def _settle(self, last: _Pending, following: tuple[float, list[float]] | None) -> None:
         """Look for events in a segment, now that the value after it is known, and append it."""
         before, after = list(last.before), list(last.after)
+        self._locator.scaling = last.scaling
         for place in self._places:
             value, beyond = after[place], following[1][place] if following else math.nan
             size = max(_FADING * self._sizes[place], abs(value))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from racs_bif.continuation.points import Point
 from racs_bif.continuation.problem import Detector
-from racs_bif.equilibria.problem import EquilibriumProblem
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Point
+    from racs_bif.equilibria.problem import EquilibriumProblem
 
 
 class BranchPoint(Detector):
@@ -44,9 +46,7 @@ class BranchPoint(Detector):
         v, psi = right[-1], left[:, -1]
         along = point.tangent / np.abs(point.tangent).max()
         curvature = float(psi @ field.f_xx(x, p, v, v))
-        mixed = float(
-            psi @ (field.f_xx(x, p, along[:-1], v) + along[-1] * field.f_xp(x, p, v, dp))
-        )
+        mixed = float(psi @ (field.f_xx(x, p, along[:-1], v) + along[-1] * field.f_xp(x, p, v, dp)))
         size = float(np.abs(field.f_xx(x, p, v, v)).max()) + abs(mixed)
         pitchfork = abs(curvature) <= 1e-6 * size
         alpha = 0.0 if pitchfork or mixed == 0.0 else -0.5 * curvature / mixed

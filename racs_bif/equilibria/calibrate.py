@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,8 +12,12 @@ from racs_bif.equilibria.hopf import Hopf
 from racs_bif.equilibria.problem import EquilibriumProblem
 from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.fractional.exact_hopf import ExactHopf, solve_hopf
-from racs_bif.fractional.system import System
 from racs_bif.symbolic.model import find_parameter
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from racs_bif.fractional.system import System
 
 
 @dataclass(frozen=True)

@@ -11,15 +11,22 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from racs_bif.continuation.points import Array, Spectrum
 from racs_bif.continuation.problem import Bound, Problem
-from racs_bif.symbolic.field import VectorField
-from racs_bif.symbolic.paths import ParameterPath
+from racs_bif.fractional.realised import RealisedField
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import VectorField
+    from racs_bif.symbolic.paths import ParameterPath
 
 Span = tuple[float, float]
+Matrix = NDArray[Any]
+"""Real on realisations, complex on the exact model."""
 Measures = Callable[[Array, Array], dict[str, float]]
 
 _FLOOR = 1e-8
@@ -66,10 +73,19 @@ class CurveProblem(Problem):
         self.parameter = path.names[1]
         self._span = span
         self._measures = measures
+        self._vector: tuple[bytes, Array] = (b"", np.empty(0))
 
     def base(self, z: Array) -> tuple[Array, Array]:
         """Return the states (n,) and the base parameters (np,)."""
-        return z[: self.n], self.path.vector(z[-2:])
+        key = z[-2:].tobytes()
+        if key != self._vector[0]:
+            self._vector = key, self.path.vector(z[-2:])
+        return z[: self.n], self._vector[1]
+
+    def realised(self, z: Array) -> tuple[RealisedField, Array, Array]:
+        """Return the realised field, its states (n,) and the base parameters at a point."""
+        assert isinstance(self.field, RealisedField)  # the others override this
+        return (self.field, *self.base(z))
 
     def directions(self, z: Array) -> tuple[Array, Array]:
         """Return the directions (np,) of the two active parameters."""
@@ -111,8 +127,8 @@ class CurveProblem(Problem):
 @dataclass(frozen=True)
 class _Reference:
     z: Array
-    left: Array
-    right: Array
+    left: Matrix
+    right: Matrix
 
 
 class Borders:
@@ -125,7 +141,7 @@ class Borders:
     def __init__(self) -> None:
         self._kept: list[_Reference] = []
 
-    def at(self, z: Array, make: Callable[[], tuple[Array, Array]]) -> tuple[Array, Array]:
+    def at(self, z: Array, make: Callable[[], tuple[Matrix, Matrix]]) -> tuple[Matrix, Matrix]:
         """Return left and right borders (rows, k), made by `make` where there are none."""
         if not self._kept:
             self._kept.append(_Reference(z.copy(), *make()))
@@ -133,22 +149,22 @@ class Borders:
         nearest = min(self._kept, key=lambda kept: float(np.sum(((kept.z - z) / sizes) ** 2)))
         return nearest.left, nearest.right
 
-    def follow(self, z: Array, left: Array, right: Array) -> None:
+    def follow(self, z: Array, left: Matrix, right: Matrix) -> None:
         """Take the null vectors at an accepted point as the next borders."""
         reference = _Reference(z.copy(), _orthonormal(left), _orthonormal(right))
         self._kept = [*self._kept[:1], reference]
 
-    def restart(self, z: Array, left: Array, right: Array) -> None:
-        """Begin anew with borders turned as the old ones were, as far as that is defined."""
+    def restart(self, z: Array, left: Matrix, right: Matrix) -> None:
+        """Take other borders at z, where the old ones have become useless."""
         self._kept.append(_Reference(z.copy(), left, right))
 
 
-def oblique(*vectors: Array) -> bool:
+def oblique(*vectors: Matrix) -> bool:
     """Whether null vectors of unit projection on their borders are far from them."""
     return any(not float(np.abs(v).max()) < _OBLIQUE for v in vectors)
 
 
-def _orthonormal(columns: Array) -> Array:
+def _orthonormal(columns: Matrix) -> Matrix:
     """Return an orthonormal basis (rows, k) that turns continuously with the columns."""
     if columns.shape[1] == 1:
         return np.asarray(columns / np.linalg.norm(columns))

@@ -7,13 +7,17 @@ it goes on to another from the same start.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.exact import ExactModel
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.symbolic.field import Array
 
 _ITERATIONS = 60
 _SAME = 1e-6

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from racs_bif.continuation.points import Point
 from racs_bif.continuation.problem import Detector
-from racs_bif.equilibria.problem import EquilibriumProblem
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Point
+    from racs_bif.equilibria.problem import EquilibriumProblem
 
 
 class Fold(Detector):

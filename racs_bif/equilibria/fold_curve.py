@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.continuation.points import Array, Spectrum
 from racs_bif.equilibria.curve_problem import (
     Borders,
     CurveProblem,
+    Matrix,
     Measures,
     Span,
     critical_first,
     oblique,
 )
-from racs_bif.symbolic.field import VectorField
-from racs_bif.symbolic.paths import ParameterPath
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Array, Spectrum
+    from racs_bif.symbolic.field import VectorField
+    from racs_bif.symbolic.paths import ParameterPath
 
 
 @dataclass(frozen=True)
@@ -101,6 +105,11 @@ class FoldCurve(CurveProblem):
         solved = self._solve(z)
         return solved.v / np.linalg.norm(solved.v), solved.w / np.linalg.norm(solved.w)
 
+    def alignment(self, z: Array) -> float:
+        """Return w . v of the unit null vectors, zero where zero is a double eigenvalue."""
+        v, w = self.null_vectors(z)
+        return float(w @ v)
+
     def frequency(self, z: Array) -> float:
         """Return NaN: no pair is critical all along."""
         del z
@@ -113,12 +122,12 @@ class FoldCurve(CurveProblem):
         return critical_first(eigvals(self._solve(z).A, check_finite=False), (0.0,))
 
 
-def _null_vectors(A: Array) -> tuple[Array, Array]:
+def _null_vectors(A: Array) -> tuple[Matrix, Matrix]:
     left, _, right = np.linalg.svd(A)
     return left[:, -1:], right[-1:].T
 
 
-def _bordered(A: Array, left: Array, right: Array) -> tuple[Array, Array, float]:
+def _bordered(A: Array, left: Matrix, right: Matrix) -> tuple[Matrix, Matrix, float]:
     n = len(A)
     matrix = np.zeros((n + 1, n + 1))
     matrix[:n, :n], matrix[:n, n:], matrix[n:, :n] = A, left, right.T

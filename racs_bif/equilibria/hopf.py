@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from racs_bif.continuation.points import Point, Spectrum
 from racs_bif.continuation.problem import Detector
 from racs_bif.equilibria.hopf_form import hopf_form
-from racs_bif.equilibria.problem import EquilibriumProblem
 
-_REAL = 1e-7
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Point, Spectrum
+    from racs_bif.equilibria.problem import EquilibriumProblem
+
+REAL = 1e-7
+"""Below this a frequency is zero."""
 
 
 class Hopf(Detector):
@@ -36,7 +39,7 @@ class Hopf(Detector):
         section 10.2.2). Sums of conjugates and of two real eigenvalues are real and decide its sign.
         """
         del problem
-        sums = _real_sums(point.spectrum)[0]
+        sums = real_sums(point.spectrum)[0]
         if not len(sums):
             return float("nan")
         sign = -1.0 if np.count_nonzero(sums < 0.0) % 2 else 1.0
@@ -44,10 +47,10 @@ class Hopf(Detector):
 
     def data(self, problem: EquilibriumProblem, point: Point) -> dict[str, Any] | None:
         """Return frequency, normal form and criticality; None at a neutral saddle."""
-        sums, frequencies = _real_sums(point.spectrum)
+        sums, frequencies = real_sums(point.spectrum)
         k = int(np.argmin(np.abs(sums)))
         omega = float(frequencies[k])
-        if omega <= _REAL * (1.0 + np.abs(point.spectrum).max() * _REAL):
+        if omega <= REAL * (1.0 + np.abs(point.spectrum).max() * REAL):
             return None
         z, path = point.z, problem.path
         form = hopf_form(
@@ -68,7 +71,7 @@ class Hopf(Detector):
         }
 
 
-def _real_sums(spectrum: Spectrum) -> tuple[np.ndarray, np.ndarray]:
+def real_sums(spectrum: Spectrum) -> tuple[np.ndarray, np.ndarray]:
     """Return the real sums of two eigenvalues, and the frequency (0 for two real ones) of each."""
     upper = spectrum[spectrum.imag > 0.0]
     real = spectrum[spectrum.imag == 0.0].real

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.continuation.points import Array, Spectrum
 from racs_bif.equilibria.curve_problem import (
     Borders,
     CurveProblem,
+    Matrix,
     Measures,
     Span,
     critical_first,
     oblique,
 )
 from racs_bif.equilibria.hopf_form import Complex, Cubic, cubic
-from racs_bif.symbolic.field import VectorField
-from racs_bif.symbolic.paths import ParameterPath
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Array, Spectrum
+    from racs_bif.symbolic.field import VectorField
+    from racs_bif.symbolic.paths import ParameterPath
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,7 @@ class HopfCurve(CurveProblem):
         for k, dp in enumerate(self.directions(z)):
             column = n + 1 + k
             jacobian[:n, column] = field.f_p(x, p, dp)
-            moved = np.column_stack([field.f_xp(x, p, direction, dp) for direction in v.T])
+            moved = field.f_xp(x, p, v, dp)
             for r, weights in enumerate(w):
                 jacobian[n + r, column] = -np.sum(weights * moved)
         return jacobian
@@ -185,12 +189,12 @@ class HopfCurve(CurveProblem):
         return super().measures(z) | {"omega": omega, "l1": l1, "neutral": float(neutral)}
 
 
-def _null_spaces(K: Array) -> tuple[Array, Array]:
+def _null_spaces(K: Array) -> tuple[Matrix, Matrix]:
     left, _, right = np.linalg.svd(K)
     return left[:, -2:], right[-2:].T
 
 
-def _bordered(K: Array, left: Array, right: Array) -> tuple[Array, Array, Array]:
+def _bordered(K: Array, left: Matrix, right: Matrix) -> tuple[Matrix, Matrix, Matrix]:
     m = len(K)
     matrix = np.zeros((m + 2, m + 2))
     matrix[:m, :m], matrix[:m, m:], matrix[m:, :m] = K, left, right.T

@@ -8,11 +8,13 @@ are left out of the length |q| = 1, so that the coefficients tend to those of th
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from racs_bif.symbolic.field import Array, VectorField
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array, VectorField
 
 Complex = NDArray[np.complex128]
 

@@ -13,20 +13,16 @@ factorials. Complex amplitudes come with their conjugates as modes of their own.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.equilibria.hopf_form import Complex
-from racs_bif.symbolic.field import Array, Vectors
 from racs_bif.symbolic.jets import Algebra, Monomial, total_degree
 
-
-class Expandable(Protocol):
-    """A vector field that can be expanded in Taylor series."""
-
-    def series(self, x: Vectors, p: Array, algebra: Algebra) -> Vectors:
-        """Return the coefficients (n, monomials) of f at a polynomial x."""
+if TYPE_CHECKING:
+    from racs_bif.equilibria.hopf_form import Complex
+    from racs_bif.fractional.realised import RealisedField
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True)
@@ -64,7 +60,7 @@ class NormalForm:
 
 
 def normal_form(
-    field: Expandable,
+    field: RealisedField,
     point: tuple[Array, Array, Array],
     frequencies: tuple[float, ...],
     modes: tuple[Mode, ...],
@@ -74,7 +70,7 @@ def normal_form(
 
     Parameters
     ----------
-    field : Expandable
+    field : RealisedField
         The vector field.
     point : tuple of array
         The equilibrium (n,), the base parameters (np,) and f_x (n, n) there.

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.continuation.points import Array, Spectrum
 from racs_bif.continuation.problem import Problem
-from racs_bif.symbolic.field import VectorField
-from racs_bif.symbolic.paths import ParameterPath
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import VectorField
+    from racs_bif.symbolic.paths import ParameterPath
 
 Measures = Callable[[Array, Array], dict[str, float]]
 """Maps states (n,) and base parameters (np,) to named quantities."""

@@ -35,7 +35,7 @@ class Aaa(Realisation):
         Where the law is sampled [rad/s].
     order : int
         Number of poles, besides one at 0 where the law integrates; 0 takes three a decade,
-        at least 4.
+        at least 8.
 
     Raises
     ------
@@ -50,7 +50,7 @@ class Aaa(Realisation):
         super().__post_init__()
         if self.order == 0:
             decades = math.log10(self.band[1] / self.band[0])
-            object.__setattr__(self, "order", max(4, round(3.0 * decades)))
+            object.__setattr__(self, "order", max(8, round(3.0 * decades)))
         if self.order < 1:
             msg = f"order {self.order} is too small; use at least 1"
             raise UsageError(msg)

@@ -2,24 +2,28 @@
 
 The phase of det Delta is followed along contours over t = log s. A step counts when the change of
 log det Delta agrees, in modulus and phase, with the integral of its exact logarithmic derivative;
-otherwise it is halved. det Delta has zeros but no poles, so a root beside the contour cannot hide: the
-logarithmic derivative grows like one over the distance.
+otherwise it is halved. det Delta has zeros but no poles, so a root beside the contour cannot hide:
+the logarithmic derivative grows like one over the distance.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.characteristic import Characteristic
-from racs_bif.fractional.exact import ExactModel
-from racs_bif.fractional.laws import Complex
 from racs_bif.fractional.polish import polish
 from racs_bif.fractional.radii import Annulus, annulus
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.fractional.laws import Complex
+    from racs_bif.symbolic.field import Array
 
 _SPACING = 0.4
 _LARGEST_PHASE = 1.3
@@ -197,13 +201,11 @@ def count_rectangle(ch: Characteristic, low: complex, high: complex) -> tuple[in
         If a root lies on its boundary.
     """
     corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag), low]
-    change = follow(ch, [segment(a, b) for a, b in zip(corners, corners[1:], strict=False)])
+    change = follow(ch, [segment(a, b) for a, b in itertools.pairwise(corners)])
     return round(change.log.imag / (2.0 * np.pi)), change
 
 
-def count_unstable(
-    model: ExactModel, X: Array, p: Array, above: float = 0.0
-) -> Count:
+def count_unstable(model: ExactModel, X: Array, p: Array, above: float = 0.0) -> Count:
     """Count the characteristic roots right of the line Re s = above by the argument principle.
 
     Parameters
@@ -225,9 +227,7 @@ def count_unstable(
     return count_right(Characteristic.of_model(model, X, p), above)
 
 
-def count_right(
-    ch: Characteristic, above: float = 0.0, *, ring: Annulus | None = None
-) -> Count:
+def count_right(ch: Characteristic, above: float = 0.0, *, ring: Annulus | None = None) -> Count:
     """Count roots right of Re s = above; see `count_unstable`.
 
     Parameters
@@ -244,13 +244,20 @@ def count_right(
         change = follow(ch, _contour(ch, ring, above, 0.0))
     except OnContourError as error:
         return _count_beside(ch, ring, above, error.places)
-    return _read(change, above, (), ring)
+    return _read(change, above, (), ring, ch)
 
 
 def _read(
-    change: Change, above: float, on_line: tuple[complex, ...], ring: Annulus
+    change: Change,
+    above: float,
+    on_line: tuple[complex, ...],
+    ring: Annulus,
+    ch: Characteristic,
 ) -> Count:
     turns = change.log.imag / np.pi
+    if ch.integer and above <= -np.exp(ring.inner):
+        # Without a branch cut the contour goes around s = 0.
+        turns -= round(ring.zero_order)
     number = round(turns)
     distance = abs(turns - number)
     if distance > 0.05 or number < 0:
@@ -275,14 +282,12 @@ def _count_beside(ch: Characteristic, ring: Annulus, above: float, places: Compl
         except OnContourError:
             continue
         if round((left.log.imag - right.log.imag) / np.pi) == number:
-            return _read(right, above, on_line, ring)
+            return _read(right, above, on_line, ring, ch)
     msg = f"the roots on Re s = {above:g} cannot be counted, or are multiple; move the line"
     raise ConvergenceError(msg)
 
 
-def _contour(
-    ch: Characteristic, ring: Annulus, above: float, lip: float
-) -> list[Piece]:
+def _contour(ch: Characteristic, ring: Annulus, above: float, lip: float) -> list[Piece]:
     """Return the upper half of the boundary of the region, counter-clockwise; both ends are real.
 
     `lip` is how far below the branch cut, in arg s, the contour passes.
@@ -316,8 +321,8 @@ def _line(above: float, R: float, r: float) -> Piece:
     if above == 0.0:
         return Piece(lambda x: np.asarray(x + 0.5j * np.pi), float(np.log(R)), float(np.log(r)))
     size = abs(above)
-    top = np.sqrt(max(R * R - above * above, 0.0))
-    bottom = np.sqrt(max(r * r - above * above, 0.0))
+    top = R * np.sqrt(max(1.0 - (above / R) ** 2, 0.0))
+    bottom = r * np.sqrt(max(1.0 - (above / r) ** 2, 0.0))
 
     def t(x: Array) -> Complex:
         return np.asarray(np.log(above + 1j * size * np.sinh(x)))

@@ -1,15 +1,18 @@
 """Roots in a disc by contour integrals of the inverse matrix.
 
-Source: W.-J. Beyn, *An integral method for solving nonlinear eigenvalue problems*, Linear Algebra Appl.
-436 (2012) 3839-3863, algorithm 2 (more roots than rows: a block Hankel matrix of moments).
+Source: W.-J. Beyn, *An integral method for solving nonlinear eigenvalue problems*, Linear Algebra
+Appl. 436 (2012) 3839-3863, algorithm 2 (more roots than rows: a block Hankel matrix of moments).
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from racs_bif.fractional.characteristic import Characteristic
-from racs_bif.fractional.laws import Complex
+if TYPE_CHECKING:
+    from racs_bif.fractional.characteristic import Characteristic
+    from racs_bif.fractional.laws import Complex
 
 _NODES = 64
 _RANK = 1e-9

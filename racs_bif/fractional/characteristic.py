@@ -1,20 +1,24 @@
 """The characteristic matrix ``Delta(s) = diag(left) - diag(right) core`` over the logarithm of s.
 
-Every entry is a sum of real powers of s. With ``s = exp(t)`` a power ``s**a`` is ``exp(a t)``: an entire
-function of t. The principal sheet is the strip ``|Im t| < pi`` and the branch cut is gone, so that
-contours may cross it.
+Every entry is a sum of real powers of s. With ``s = exp(t)`` a power ``s**a`` is ``exp(a t)``: an
+entire function of t. The principal sheet is the strip ``|Im t| < pi`` and the branch cut is gone,
+so that contours may cross it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ParameterError
-from racs_bif.fractional.exact import ExactModel
 from racs_bif.fractional.laws import Complex, PowerSum
-from racs_bif.symbolic.field import Array
+from racs_bif.fractional.power_sums import merged
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.symbolic.field import Array
 
 _FEW = 4096  # matrices handled at once
 
@@ -35,21 +39,22 @@ class Characteristic:
         If shapes do not fit, numbers are not finite, or an exponent is negative.
     """
 
-    def __init__(
-        self, left: Sequence[PowerSum], right: Sequence[PowerSum], core: Array
-    ) -> None:
+    def __init__(self, left: Sequence[PowerSum], right: Sequence[PowerSum], core: Array) -> None:
         core = np.atleast_2d(np.asarray(core, dtype=float))
         self.size = len(core)
         if not self.size == core.shape[1] == len(left) == len(right):
             msg = f"{len(left)} and {len(right)} rows do not fit a matrix {core.shape}"
             raise ParameterError(msg)
-        self.left = tuple(_merged(row) for row in left)
-        self.right = tuple(_merged(row) for row in right)
-        self.core = _balanced(core)
-        numbers = [core.ravel(), *(x for r in (*left, *right) for x in (r.coefficients, r.exponents))]
+        self.left = tuple(merged(row) for row in left)
+        self.right = tuple(merged(row) for row in right)
+        numbers = [
+            core.ravel(),
+            *(x for r in (*left, *right) for x in (r.coefficients, r.exponents)),
+        ]
         if not all(np.all(np.isfinite(x)) for x in numbers):
             msg = "the characteristic matrix is not finite at this point; check the parameters"
             raise ParameterError(msg)
+        self.core = _balanced(core)
         if any(len(r.coefficients) == 0 for r in self.left):
             msg = "a law's denominator vanishes at these parameters; check its coefficients"
             raise ParameterError(msg)
@@ -119,11 +124,11 @@ class Characteristic:
         Returns
         -------
         (array (m,), array (m,))
-            The imaginary part of the logarithm is the phase in (-pi, pi]. Where Delta is singular to
-            the last digit the logarithm is minus infinity and the derivative infinite.
+            The imaginary part of the logarithm is the phase in (-pi, pi]. Where Delta is singular
+            to the last digit the logarithm is minus infinity and the derivative infinite.
         """
         t = np.atleast_1d(np.asarray(t, dtype=complex))
-        parts = [self._log_det(t[k : k + _FEW]) for k in range(0, len(t), _FEW)]
+        parts = [self._log_det(t[k : k + _FEW]) for k in range(0, max(len(t), 1), _FEW)]
         return np.concatenate([a for a, _ in parts]), np.concatenate([b for _, b in parts])
 
     def _log_det(self, t: Complex) -> tuple[Complex, Complex]:
@@ -141,15 +146,6 @@ class Characteristic:
         return size + 1j * np.angle(unit), rate
 
 
-def _merged(row: PowerSum) -> PowerSum:
-    """Return a sum with equal exponents taken together and zero terms left out."""
-    exponents, places = np.unique(row.exponents, return_inverse=True)
-    coefficients = np.zeros(len(exponents))
-    np.add.at(coefficients, places.ravel(), row.coefficients)
-    keep = coefficients != 0.0
-    return PowerSum(coefficients[keep], exponents[keep])
-
-
 def _packed(rows: tuple[PowerSum, ...]) -> tuple[Array, Array]:
     """Return coefficients and exponents (n, k), rows filled up with zeros."""
     longest = max(1, *(len(r.coefficients) for r in rows)) if rows else 1
@@ -160,7 +156,7 @@ def _packed(rows: tuple[PowerSum, ...]) -> tuple[Array, Array]:
 
 
 def _balanced(core: Array) -> Array:
-    """Scale rows and columns by inverse powers of two: diagonals and determinant stay as they are."""
+    """Scale rows and inversely columns by powers of two; the determinant stays as it is."""
     from scipy.linalg import matrix_balance
 
     return np.asarray(matrix_balance(core, permute=False)[0], dtype=float)

@@ -1,10 +1,10 @@
 """Charef's realisation of each power of s.
 
 A. Charef, H. H. Sun, Y. Y. Tsao, B. Onaral, *IEEE Trans. Autom. Control* 37 (1992) 1465-1470: the
-fractional pole ``1/(1 + s/LOW)**m`` follows its straight line in a Bode diagram by alternating poles
-and zeros, within y decibels. Here ``s**a = s * s**-m`` with m = 1 - a, so that the zero at s = 0 is exact
-and with it the static gain of the law; y = 10 m (1-m) lg(HIGH/LOW) / sections is what fills the
-band evenly, and makes places and gain smooth in the order.
+fractional pole ``1/(1 + s/LOW)**m`` follows its straight line in a Bode diagram by alternating
+poles and zeros, within y decibels. Here ``s**a = s * s**-m`` with m = 1 - a, so that the zero at s
+= 0 is exact and with it the static gain of the law; y = 10 m (1-m) lg(HIGH/LOW) / sections is what
+fills the band evenly, and makes places and gain smooth in the order.
 """
 
 from __future__ import annotations
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, kw_only=True)
 class Charef(PowerRealisation):
     """Charef's alternating poles and zeros for the powers of a law."""
+
+    density = 2.0
 
     @property
     def name(self) -> str:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from racs_bif.fractional.filter import Filter, Realisation
     from racs_bif.fractional.laws import Complex, Law
     from racs_bif.fractional.system import System
+    from racs_bif.symbolic.field import Array
     from racs_bif.symbolic.paths import ParameterPath
 
 _ROUNDING = 1e-9
@@ -78,6 +79,7 @@ def compare(
     *,
     band: tuple[float, float] | None = None,
     hopf: tuple[str, float, float] | None = None,
+    X: Array | None = None,
 ) -> list[Comparison]:
     """Compare realisations of a system's laws.
 
@@ -86,12 +88,16 @@ def compare(
     system : System
         The system, at whose parameters the laws are taken.
     realisations : iterable of Realisation
-        What is compared. A fitted one is put on the exact Hopf point's frequency if `hopf` is given.
+        What is compared. A fitted one is put on the exact Hopf point's frequency if `hopf` is
+        given.
     band : (float, float), optional
         Frequencies [rad/s] over which errors are taken; the system's band where left out.
     hopf : (str, float, float), optional
         Parameter, and estimates of its value and of the frequency [rad/s] at the Hopf point that is
         compared.
+    X : array (size,), optional
+        Estimate of states and element outputs there; the equilibrium near the model's guess where
+        left out.
 
     Returns
     -------
@@ -108,8 +114,9 @@ def compare(
     if hopf is not None:
         parameter, value, omega = hopf
         path = system.path(parameter)
-        p = path.vector(value)
-        X = system.exact_point(system.equilibrium(p), p)
+        if X is None:
+            p = path.vector(value)
+            X = system.exact_point(system.equilibrium(p), p)
         exact = solve_hopf(system.exact, path, X, value, omega)
     rows = []
     for realisation in realisations:

@@ -1,9 +1,10 @@
 r"""Continued fraction of each power of s about the centre of the band.
 
-The continued fractions of (1 + x)**a, Carlson's and "CFE", are Pade approximants about one frequency
-(I. Podlubny, I. Petras, B. M. Vinagre, P. O'Leary, L. Dorcak, *Nonlinear Dynamics* 29 (2002) 281-296).
-The one used here keeps s**a = 0 at s = 0, which makes static gains exact: it is s times the [n-1/n]
-approximant of s**(a-1) about c, the convergent of its J-fraction and so the Gauss-Jacobi rule of
+The continued fractions of (1 + x)**a, Carlson's and "CFE", are Pade approximants about one
+frequency (I. Podlubny, I. Petras, B. M. Vinagre, P. O'Leary, L. Dorcak, *Nonlinear Dynamics* 29
+(2002) 281-296). The one used here keeps s**a = 0 at s = 0, which makes static gains exact: it is s
+times the [n-1/n] approximant of s**(a-1) about c, the convergent of its J-fraction and so the
+Gauss-Jacobi rule of
 
 .. math:: (s/c)^a = \frac{\sin \pi a}{\pi} \int_{-1}^{1} (1-t)^{a-1} (1+t)^{-a}
           \frac{2 s}{s (1+t) + c (1-t)} \, dt .
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, kw_only=True)
 class ContinuedFraction(PowerRealisation):
     """Continued fractions about the geometric centre of a band, for the powers of a law."""
+
+    density = 3.0
 
     @property
     def name(self) -> str:

@@ -1,9 +1,9 @@
 """Realisation fitted to the bifurcation: exact where a Hopf point looks.
 
-Speed, frequency and crossing speed of a Hopf point and its first Lyapunov coefficient depend on a law
-through Z(0), Z(i omega), Z'(i omega) and Z(2 i omega) alone (the characteristic matrix enters the
-normal form nowhere else). These seven real numbers are conditions here, the rest of the band is
-fitted by least squares with what freedom is left: order 8 with a feedthrough has nine gains.
+Speed, frequency and crossing speed of a Hopf point and its first Lyapunov coefficient depend on a
+law through Z(0), Z(i omega), Z'(i omega) and Z(2 i omega) alone (the characteristic matrix enters
+the normal form nowhere else). These seven real numbers are conditions here, the rest of the band
+is fitted by least squares with what freedom is left: order 8 with a feedthrough has nine gains.
 
 The rates do not depend on omega or on the law. Hence the gains are smooth in the law's numbers,
 and their derivatives follow from the conditions and the normal equations.
@@ -52,8 +52,8 @@ class Fitted(Realisation):
     order : int
         Number of relaxation rates, at least 7; 0 takes 4.5 a decade, at least 8.
     omega : float
-        Frequency of the Hopf point [rad/s], within the band; 0 takes the band's geometric centre. See
-        `fit_to_hopf`.
+        Frequency of the Hopf point [rad/s], within the band; 0 takes the band's geometric centre.
+        See `fit_to_hopf`.
     spread : float
         How far the rates reach beyond the band at either end, as a factor. For order 8 on 1 to 60
         rad/s, over 20 vehicle laws with omega in 5 to 16 rad/s, the worst error between 2 and 40
@@ -82,7 +82,7 @@ class Fitted(Realisation):
         if self.omega == 0.0:
             object.__setattr__(self, "omega", float(np.sqrt(low * high)))
         if not low <= self.omega <= high:
-            msg = f"omega {self.omega:g} rad/s is outside the band {low:g} .. {high:g}; widen the band"
+            msg = f"omega {self.omega:g} rad/s is outside the band {low:g} .. {high:g}; widen it"
             raise UsageError(msg)
         if not 0.0 < self.spread < float("inf"):
             msg = f"spread {self.spread:g} is not usable; give a positive factor"
@@ -149,7 +149,13 @@ class Fitted(Realisation):
 
 
 def fit_to_hopf(
-    system: System, parameter: str, value: float, omega: float, *, order: int = 0
+    system: System,
+    parameter: str,
+    value: float,
+    omega: float,
+    *,
+    order: int = 0,
+    X: Array | None = None,
 ) -> System:
     """Return the system realised so that its Hopf point is that of the exact model.
 
@@ -166,6 +172,9 @@ def fit_to_hopf(
         Estimates of the parameter and of the frequency [rad/s] at the Hopf point.
     order : int
         Order of the realisation; 0 keeps that of a fitted one and takes its default otherwise.
+    X : array (size,), optional
+        Estimate of states and element outputs; the equilibrium near the model's guess where left
+        out.
 
     Returns
     -------
@@ -185,8 +194,9 @@ def fit_to_hopf(
     its own; until then it is as good as the fit over the band.
     """
     path = system.path(parameter)
-    p = path.vector(value)
-    X = system.exact_point(system.equilibrium(p), p)
+    if X is None:
+        p = path.vector(value)
+        X = system.exact_point(system.equilibrium(p), p)
     settings = system.settings
     if not isinstance(settings, Fitted):
         settings = Fitted(band=settings.band)

@@ -1,10 +1,10 @@
 """Matsuda's continued fraction of each power of s, with an exact static gain.
 
 K. Matsuda, H. Fujii, *J. Guidance, Control, and Dynamics* 16 (1993) 1146-1153: Thiele's continued
-fraction ``b0 + (s - s0)/(b1 + (s - s1)/(b2 + ...))`` through the moduli |(i omega)**a| at omega = s0, s1, ...,
-which are the values of s**a at s > 0. Here s = 0 is one of the points: the static gain is exact. A
-power with 0 < a < 1 is a complete Bernstein function, of which such a fraction has poles and zeros that are
-real, negative and alternate.
+fraction ``b0 + (s - s0)/(b1 + (s - s1)/(b2 + ...))`` through the moduli |(i omega)**a| at omega =
+s0, s1, ..., which are the values of s**a at s > 0. Here s = 0 is one of the points: the static
+gain is exact. A power with 0 < a < 1 is a complete Bernstein function, of which such a fraction
+has poles and zeros that are real, negative and alternate.
 
 The denominator is evaluated by its three-term recurrence, with its derivatives; poles are polished
 on it, and poles and residues differentiated by the implicit function theorem.
@@ -31,6 +31,8 @@ class Matsuda(PowerRealisation):
     More than about four sections a decade cannot be told apart in double precision: the poles are
     then refused.
     """
+
+    density = 3.0
 
     @property
     def name(self) -> str:

@@ -1,23 +1,26 @@
 """Counting unstable characteristic roots by the phase of det Delta on the imaginary axis alone.
 
 For a degree E at infinity and a phase that turns by phi as omega goes from 0 to infinity there are
-``E/2 - phi/pi`` roots right of the axis (A. W. Mikhailov, 1938, for polynomials). What the phase does
-beyond the largest and before the smallest frequency is known exactly from the leading terms.
+``E/2 - phi/pi`` roots right of the axis (A. W. Mikhailov, 1938, for polynomials). What the phase
+does beyond the largest and before the smallest frequency is known exactly from the leading terms.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.argument import OnContourError, Piece, follow
 from racs_bif.fractional.characteristic import Characteristic
-from racs_bif.fractional.exact import ExactModel
 from racs_bif.fractional.polish import polish
 from racs_bif.fractional.radii import annulus, inner_phase, outer_phase
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.symbolic.field import Array
 
 _QUARTER = 0.5 * np.pi
 _TRUSTED = 0.05

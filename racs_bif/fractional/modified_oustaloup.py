@@ -7,16 +7,16 @@ With L = LOW, H = HIGH and the constants b = 10, d = 9,
                = \left(\frac{b s}{d L}\right)^a (1 + p(s))^a,
           \qquad p(s) = \frac{d (L H - s^2)}{d s^2 + b H s},
 
-so that to first order in p ``s^a = (d L/b)^a K(s) / (1 + a p(s))``, and K is replaced by alternating
-zeros and poles. The corners of K are d L/b and b H/d, so that K tends to the product
+so that to first order in p ``s^a = (d L/b)^a K(s) / (1 + a p(s))``, and K is replaced by
+alternating zeros and poles. The corners of K are d L/b and b H/d, so that K tends to the product
 
     prod (1 + s/z_k) / (1 + s/p_k)   with   prod p_k/z_k = (b^2 H / (d^2 L))^a
 
 and ``(d L/b)^a prod p_k/z_k = (b H/d)^a``. As commonly coded the zeros and poles run over L .. H
-instead, where prod p_k/z_k = (H/L)^a, while the factor (d L/b)^a stays: the gain in the middle of the
-band is then (d/b)^a of what it should be, 0.93 for a = 0.7, and the vehicle's Hopf speed comes out as
-8.99 m/s instead of 10.2. Here zeros and poles run over the corners of K, and the gain is right. Common
-code also writes d for d L H in p(s), which holds for L H = 1 only.
+instead, where prod p_k/z_k = (H/L)^a, while the factor (d L/b)^a stays: the gain in the middle of
+the band is then (d/b)^a of what it should be, 0.93 for a = 0.7, and the vehicle's Hopf speed comes
+out as 8.99 m/s instead of 10.2. Here zeros and poles run over the corners of K, and the gain is
+right. Common code also writes d for d L H in p(s), which holds for L H = 1 only.
 """
 
 from __future__ import annotations
@@ -47,6 +47,8 @@ class ModifiedOustaloup(PowerRealisation):
 
     Its zero at s = 0 makes static gains exact.
     """
+
+    density = 2.0
 
     @property
     def name(self) -> str:

@@ -1,16 +1,17 @@
 """Diffusive realisation with gains that are not negative: it relaxes, whatever the fit.
 
-The relaxation function of a law Z(s) is completely monotone where Z is a complete Bernstein function, the
-creep function where Z is a Stieltjes function (R. L. Schilling, R. Song, Z. Vondracek, *Bernstein
-Functions*, chapters 2 and 6). On the upper side of the cut that shows in the sign of the spectrum,
-Im Z(x exp(i pi)), the same for all x > 0. Then Z is a sum with gains >= 0 of
+The relaxation function of a law Z(s) is completely monotone where Z is a complete Bernstein
+function, the creep function where Z is a Stieltjes function (R. L. Schilling, R. Song, Z.
+Vondracek, *Bernstein Functions*, chapters 2 and 6). On the upper side of the cut that shows in the
+sign of the spectrum, Im Z(x exp(i pi)), the same for all x > 0. Then Z is a sum with gains >= 0 of
 
     1 and s / (s + r)   (relaxation),      1, 1/s and r / (s + r)   (creep),
 
 and so is the realisation, found by `scipy.optimize.nnls`: it is passive where the law is. In the
-first form the static gain is a term of its own. In the second the gains add up to Z(0); with h = gains/Z(0),
-that is ``|A h - b|`` over h >= 0 with sum 1, which is ``|(A - b 1') h|**2 + (1' h - 1)**2`` over h >= 0
-up to a factor of h (K. H. Haskell, R. J. Hanson, *Math. Program.* 21 (1981) 98-118).
+first form the static gain is a term of its own. In the second the gains add up to Z(0); with h =
+gains/Z(0), that is ``|A h - b|`` over h >= 0 with sum 1, which is ``|(A - b 1') h|**2 + (1' h -
+1)**2`` over h >= 0 up to a factor of h (K. H. Haskell, R. J. Hanson, *Math. Program.* 21 (1981)
+98-118).
 """
 
 from __future__ import annotations

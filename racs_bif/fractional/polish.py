@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from racs_bif.fractional.characteristic import Characteristic
-from racs_bif.fractional.laws import Complex
-from racs_bif.symbolic.field import Array
+if TYPE_CHECKING:
+    from racs_bif.fractional.characteristic import Characteristic
+    from racs_bif.fractional.laws import Complex
+    from racs_bif.symbolic.field import Array
 
 _ITERATIONS = 30
 _EPSILON = float(np.finfo(float).eps)

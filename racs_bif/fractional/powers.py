@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class PowerRealisation(Realisation):
     band : (float, float)
         Band of the filters [rad/s].
     sections : int
-        Number of sections of each power; 0 takes two a decade.
+        Number of sections of each power; 0 takes `density` a decade, at least 3.
 
     Raises
     ------
@@ -46,13 +46,15 @@ class PowerRealisation(Realisation):
     """
 
     sections: int = 0
+    density: ClassVar[float]
+    """Sections a decade where their number is left out."""
 
     def __post_init__(self) -> None:
         """Check the settings."""
         super().__post_init__()
         if self.sections == 0:
             decades = math.log10(self.band[1] / self.band[0])
-            object.__setattr__(self, "sections", max(3, round(2.0 * decades)))
+            object.__setattr__(self, "sections", max(3, round(self.density * decades)))
         if self.sections < 1:
             msg = f"{self.sections} sections are too few; use at least 1"
             raise UsageError(msg)
@@ -85,8 +87,8 @@ class PowerRealisation(Realisation):
     def _sides(self, law: Law) -> tuple[Side, Side]:
         if not law.feedthrough:
             msg = (
-                f"{self.name} leaves '{law.name}' a direct feedthrough, but its law vanishes at high "
-                "frequency; use --realisation fitted or diffusive"
+                f"{self.name} leaves '{law.name}' a direct feedthrough, but its law vanishes at "
+                "high frequency; use --realisation fitted or diffusive"
             )
             raise ParameterError(msg)
         for order in (*law.numerator.exponents, *law.denominator.exponents):
@@ -131,7 +133,7 @@ class PowerRealisation(Realisation):
 
 
 def from_zeros_and_poles(zeros: Array, poles: Array, top: float) -> Side:
-    """Return partial fractions of ``top * prod (s + zeros) / (s + poles)``, as many zeros as poles."""
+    """Return partial fractions of ``top * prod (s + zeros) / (s + poles)``, of equal numbers."""
     return Side(top, poles, top * _residues(zeros, poles) / poles)
 
 

@@ -1,24 +1,28 @@
 """Circles beyond which, and within which, there is no characteristic root.
 
-Outside: rows scaled to their leading powers are diagonally dominant in some scaling of the columns,
-which is to say that the spectral radius of the matrix of ratios is below one (an H-matrix; A. Berman,
-R. J. Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, ch. 6). Inside:
-``Delta(s) = Delta(0) (I + K(s))`` with the spectral radius of ``|K|`` below one. Both radii of spectra
-are monotone in |s|, so that one value of |s| decides for all beyond.
+Outside: rows scaled to their leading powers are diagonally dominant in some scaling of the
+columns, which is to say that the spectral radius of the matrix of ratios is below one (an
+H-matrix; A. Berman, R. J. Plemmons, *Nonnegative Matrices in the Mathematical Sciences*, ch. 6).
+Inside: ``Delta(s) = Delta(0) (I + K(s))`` with the spectral radius of ``|K|`` below one. Both
+radii of spectra are monotone in |s|, so that one value of |s| decides for all beyond.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.characteristic import Characteristic
 from racs_bif.fractional.laws import Complex, PowerSum
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from racs_bif.fractional.characteristic import Characteristic
+    from racs_bif.symbolic.field import Array
 
 _BELOW_ONE = 0.9
 _SINGULAR = 1e-13
@@ -61,6 +65,12 @@ def annulus(ch: Characteristic) -> Annulus:
     ConvergenceError
         If there is no bound, or the behaviour at a root s = 0 cannot be told.
     """
+    # Overflow on the way is a bound that does not hold there.
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _annulus(ch)
+
+
+def _annulus(ch: Characteristic) -> Annulus:
     degree = float(sum(row.exponents[-1] for row in ch.left))
     outer = _outer(ch)
     static = _static(ch)
@@ -83,7 +93,7 @@ def _outer(ch: Characteristic) -> float:
 
 
 def _outer_ratios(ch: Characteristic, log_radius: float, reach: float) -> Array:
-    """Return bounds (n, n) of all entries against their row's diagonal, infinite if that may vanish."""
+    """Return bounds (n, n) of entries over their row's diagonal, infinite if that may vanish."""
     n = ch.size
     absolute = np.abs(ch.core)
     ratios = np.full((n, n), np.inf)
@@ -120,7 +130,7 @@ def _helpers(row: PowerSum, reach: float) -> NDArray[np.bool_]:
 
 
 def outer_phase(ch: Characteristic, angle: float, log_radius: float) -> float:
-    """Return the phase of det Delta beyond that of its leading term, on or outside the outer circle."""
+    """Return the phase of det Delta beyond its leading term's, outside the outer circle."""
     t = np.array([log_radius + 1j * angle])
     matrix = ch.matrix(t, ch.shift(t))[0]
     diagonal = matrix.diagonal()
@@ -229,7 +239,9 @@ def _search(good: Callable[[float], bool], direction: float) -> float:
             bad += direction * step
             step *= 2.0
             if abs(bad) + step > _LARGEST:
-                msg = "characteristic roots cannot be bounded within 1e-260 .. 1e260; scale the model"
+                msg = (
+                    "characteristic roots cannot be bounded within 1e-260 .. 1e260; scale the model"
+                )
                 raise ConvergenceError(msg)
         found = bad + direction * step
     while abs(found - bad) > _SHARP:

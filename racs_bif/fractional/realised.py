@@ -13,7 +13,11 @@ from racs_bif.symbolic.field import Array, VectorField, Vectors
 if TYPE_CHECKING:
     from racs_bif.fractional.filter import Filter, Realisation
     from racs_bif.symbolic.compiled import CompiledModel
-    from racs_bif.symbolic.jets import Algebra
+    from racs_bif.symbolic.jets import Algebra, Coefficients
+
+
+_FEW = 6
+"""Up to so many directions are faster one by one, on floats, than at once, on arrays."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +52,7 @@ class RealisedField(VectorField):
         self._ne = len(compiled.elements)
         self._key: bytes | None = None
         self._kept: _Frame | None = None
-        self._slopes: dict[bytes, tuple[Filter, ...]] = {}
+        self._slopes: dict[bytes, tuple[Filter, ...] | None] = {}
         self._names: tuple[str, ...] | None = None
 
     @property
@@ -182,12 +186,12 @@ class RealisedField(VectorField):
         core = forms.reshape(size, count, size).transpose(1, 0, 2)
         return np.asarray(frame.left @ core @ R)
 
-    def series(self, x: Vectors, p: Array, algebra: Algebra) -> Vectors:
+    def series(self, x: Coefficients, p: Array, algebra: Algebra) -> Coefficients:
         """Return the Taylor coefficients (n, len(algebra)) of f at a polynomial x of that shape."""
         frame = self.frame(p)
         value = frame.left @ self.compiled.expand("core", algebra, frame.P, frame.right @ x)
         value[self._ny :] += frame.A @ x[self._ny :]
-        return np.asarray(value)
+        return value
 
     def f_xxx(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:
         """Return the trilinear form C(u, v, w) at one point, shaped like the directions."""
@@ -201,7 +205,10 @@ class RealisedField(VectorField):
         frame, slopes = self.frame(p), self._filter_slopes(p, dp)
         R, core = frame.right, self.compiled
         X, V, dP = R @ x, R @ v, self._full_direction(dp, slopes)
-        value = core.core_xp(X, frame.P, V, _like(dP, v))
+        if v.ndim == 2 and v.shape[1] <= _FEW:
+            value = np.column_stack([core.core_xp(X, frame.P, column, dP) for column in V.T])
+        else:
+            value = core.core_xp(X, frame.P, V, _like(dP, v))
         if slopes is None:
             return np.asarray(frame.left @ value)
         C_p = _diagonal([s.C[None, :] for s in slopes])
@@ -216,13 +223,15 @@ class RealisedField(VectorField):
         return np.asarray(result)
 
     def _filter_slopes(self, p: Array, dp: Array) -> tuple[Filter, ...] | None:
-        directions = self.law_directions(p, dp)
-        if directions is None:
+        if not self._ne:
             return None
         key = p.tobytes() + dp.tobytes()
         if key not in self._slopes:
-            pairs = zip(self.frame(p).laws, directions, strict=True)
-            slopes = tuple(self.realisation.derivative(law, moved) for law, moved in pairs)
+            slopes = None
+            directions = self.law_directions(p, dp)
+            if directions is not None:
+                pairs = zip(self.frame(p).laws, directions, strict=True)
+                slopes = tuple(self.realisation.derivative(law, moved) for law, moved in pairs)
             # Two active parameters at a time ask for theirs again and again.
             kept = list(self._slopes.items())[-1:]
             self._slopes = dict([*kept, (key, slopes)])

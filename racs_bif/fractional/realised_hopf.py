@@ -1,4 +1,4 @@
-"""Hopf points of a realised system, by Newton's method on the real part of a pair of eigenvalues."""
+"""Hopf points of a realised system, by Newton's method on the real part of an eigenvalue."""
 
 from __future__ import annotations
 
@@ -90,8 +90,8 @@ def solve_realised_hopf(
 def _eigenpair(A: Array, target: complex) -> tuple[complex, Complex, Complex]:
     """Return the eigenvalue nearest to `target` with vectors, conj(left) . right = 1.
 
-    The pair is refined by the two-sided Rayleigh quotient: eigenvalues of a stiff matrix are exact to
-    its largest entries only.
+    The pair is refined by the two-sided Rayleigh quotient: eigenvalues of a stiff matrix are exact
+    to its largest entries only.
     """
     values, vectors = np.linalg.eig(A)
     k = int(np.argmin(np.abs(values - target)))

@@ -10,13 +10,13 @@ import numpy as np
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.argument import OnContourError, count_right
 from racs_bif.fractional.characteristic import Characteristic
-from racs_bif.fractional.laws import Complex
 from racs_bif.fractional.radii import Annulus, annulus
 from racs_bif.fractional.search import Zeros, zeros_in_rectangle
-from racs_bif.symbolic.field import Array
 
 if TYPE_CHECKING:
+    from racs_bif.fractional.laws import Complex
     from racs_bif.fractional.system import System
+    from racs_bif.symbolic.field import Array
 
 _MARGINS = (0.0517, 0.0371, 0.0873, 0.0213, 0.1291)
 _ON_AXIS = 1e-9
@@ -39,12 +39,13 @@ class Roots:
     unstable : int
         Number of roots with Re s > 0, with multiplicity; those on the axis and s = 0 left out.
     count_checked : int
-        Number of roots right of the line by the argument principle along the line: the same, or there
-        would have been an error.
+        Number of roots right of the line by the argument principle along the line: the same, or
+        there would have been an error.
     on_axis : tuple of float
         Frequencies [rad/s] of roots on the imaginary axis, within 1e-9 of their modulus.
-    at_zero : bool
-        Whether s = 0 is a root. It is not among `roots`.
+    zero_order : float
+        Power of s with which det Delta vanishes at s = 0, to about 1e-2; 0 where s = 0 is no root. It
+        is not among `roots`.
     on_cut : array
         Negative real numbers where det Delta vanishes on both lips of the branch cut, right of the
         line. They are not on the principal sheet, and not among `roots`.
@@ -57,8 +58,13 @@ class Roots:
     unstable: int
     count_checked: int
     on_axis: tuple[float, ...]
-    at_zero: bool
+    zero_order: float
     on_cut: Array
+
+    @property
+    def at_zero(self) -> bool:
+        """Whether s = 0 is a root."""
+        return self.zero_order > 0.0
 
 
 def characteristic_roots(system: System, *, above: float = -1.0) -> Roots:
@@ -112,7 +118,7 @@ def roots_right(ch: Characteristic, above: float = -1.0) -> Roots:
             f"principle counts {count.unstable}; move the line or scale the model"
         )
         raise ConvergenceError(msg)
-    order = np.lexsort((-s.imag, -np.round(s.real, 12), -s.real.round(9)))
+    order = np.lexsort((-s.imag, -np.abs(s.imag), -s.real))
     s, errors, multiplicities = s[order], errors[order], multiplicities[order]
     on_axis = np.abs(s.real) <= np.maximum(_ON_AXIS * np.abs(s), errors)
     unstable = int(multiplicities[(s.real > 0.0) & ~on_axis].sum())
@@ -124,13 +130,13 @@ def roots_right(ch: Characteristic, above: float = -1.0) -> Roots:
         unstable=unstable,
         count_checked=count.unstable,
         on_axis=tuple(float(x.imag) for x in s[on_axis] if x.imag > 0.0),
-        at_zero=ring.at_zero,
+        zero_order=ring.zero_order,
         on_cut=on_cut,
     )
 
 
 def _zeros(ch: Characteristic, ring: Annulus, above: float) -> Zeros:
-    """Return zeros over the logarithm in the closed upper half of the principal sheet, and some more."""
+    """Return zeros over log s in the closed upper half of the principal sheet, and some more."""
     least = ring.inner if above <= 0.0 else max(ring.inner, float(np.log(above)))
     angle = np.pi if above < 0.0 else 0.5 * np.pi
     if least >= ring.outer:

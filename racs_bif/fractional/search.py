@@ -1,23 +1,26 @@
 """All zeros of det Delta(exp(t)) in a rectangle over t = log s: estimated, polished, counted.
 
-Each rectangle's zeros are counted by the argument principle, estimated by Beyn's method and polished
-by Newton's. A rectangle whose number does not come out is cut in two; what cannot be cut any more
-is a multiple zero.
+Each rectangle's zeros are counted by the argument principle, estimated by Beyn's method and
+polished by Newton's. A rectangle whose number does not come out is cut in two; what cannot be cut
+any more is a multiple zero.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.argument import OnContourError, count_rectangle
 from racs_bif.fractional.beyn import roots_in_disc
-from racs_bif.fractional.characteristic import Characteristic
-from racs_bif.fractional.laws import Complex
 from racs_bif.fractional.polish import polish
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.characteristic import Characteristic
+    from racs_bif.fractional.laws import Complex
+    from racs_bif.symbolic.field import Array
 
 _AT_ONCE = 6
 _ASPECT = 2.0
@@ -163,7 +166,7 @@ def _distinct(t: Complex, errors: Array) -> Zeros:
 def _with_multiple(
     ch: Characteristic, box: _Box, estimates: tuple[Complex, Zeros], number: int
 ) -> Zeros | None:
-    """Return the zeros of a box in which some are multiple, None if the number does not come out."""
+    """Return the zeros of a box, some of them multiple; None if the number does not come out."""
     t, simple = estimates
     parts: list[Zeros] = []
     groups: list[Complex] = []

@@ -44,7 +44,7 @@ class VectorFitting(Realisation):
     band : (float, float)
         Fitted frequencies [rad/s].
     order : int
-        Number of poles, besides one at 0 where the law integrates; 0 takes three a decade,
+        Number of poles, besides one at 0 where the law integrates; 0 takes 4.5 a decade,
         at least 4.
 
     Raises
@@ -60,7 +60,7 @@ class VectorFitting(Realisation):
         super().__post_init__()
         if self.order == 0:
             decades = math.log10(self.band[1] / self.band[0])
-            object.__setattr__(self, "order", max(4, round(3.0 * decades)))
+            object.__setattr__(self, "order", max(4, round(4.5 * decades)))
         if self.order < 1:
             msg = f"order {self.order} is too small; use at least 1"
             raise UsageError(msg)

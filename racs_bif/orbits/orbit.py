@@ -100,9 +100,7 @@ def refined(problem: ShootingProblem, z: Array) -> Refinement:
         If the orbit is not found on the finer mesh.
     """
     coarse = problem.orbit(z)
-    hold = np.zeros(len(z))
-    hold[-1] = 1.0
-    finer, _ = problem.on_mesh(z, hold, halved(problem.reference(z).mesh))
+    finer, _ = problem.on_mesh(z, halved(problem.reference(z).mesh))
     return compare(coarse, problem.orbit(finer))
 
 

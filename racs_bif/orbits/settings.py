@@ -48,7 +48,7 @@ class OrbitSettings:
     most_steps: int = 1024
     segments: int = 8
     growth: float = 1e4
-    tolerance: float = 1e-5
+    tolerance: float = 2e-6
     longest: float = 300.0
     smallest: float = 1e-3
     trivial: float = 1e-3

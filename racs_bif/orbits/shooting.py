@@ -183,7 +183,7 @@ class ShootingProblem(OrbitProblem):
             flow, derivative = base.flow, base.derivative
             change = (starts - flow.starts, period - flow.period, active - flow.active)
             stages, near = flow.stages + derivative.changes(*change)[1], derivative
-        self.integrator.floor = 1e-6 * reference.scales
+        self.integrator.floor = 1e-3 * reference.scales
         flow = self.integrator.flow(reference.mesh, starts, period, active, stages, near)
         self._solution = _Solution(np.array(z), flow, self.integrator)
         return self._solution
@@ -252,7 +252,7 @@ class ShootingProblem(OrbitProblem):
         if mesh is not None:
             # if that fails the old mesh serves, until it no longer does and the branch ends
             with suppress(ConvergenceError, np.linalg.LinAlgError):
-                z, tangent = self.on_mesh(z, tangent, mesh)
+                z, tangent = self.on_mesh(z, mesh, tangent)
         z = self._follow(z)
         return z, self.tangent(z, tangent)
 
@@ -268,16 +268,17 @@ class ShootingProblem(OrbitProblem):
         self._solution = _Solution(followed, flow, self.integrator)
         return followed
 
-    def on_mesh(self, z: Array, tangent: Array, mesh: Mesh) -> tuple[Array, Array]:
-        """Solve for the same orbit on another mesh, in the hyperplane with the normal `tangent`.
+    def on_mesh(self, z: Array, mesh: Mesh, tangent: Array | None = None) -> tuple[Array, Array]:
+        """Solve for the same orbit on another mesh.
 
         Parameters
         ----------
-        z, tangent : array (M n + 3,)
-            A solution and the direction not to be moved in; all zero but for the last for the same
-            value of the parameter.
+        z : array (M n + 3,)
+            A solution.
         mesh : Mesh
             The other mesh.
+        tangent : array (M n + 3,), optional
+            The direction in which not to move; without it the parameter is held.
 
         Returns
         -------
@@ -290,15 +291,17 @@ class ShootingProblem(OrbitProblem):
             If the orbit is not found there.
         """
         flow, derivative = self._near(z)
-        by_start, by_period = self.starts(tangent), float(tangent[-3])
-        change = derivative.changes(by_start, by_period, float(tangent[-1]))
+        held = np.zeros(len(z)) if tangent is None else tangent
+        change = derivative.changes(self.starts(held), float(held[-3]), float(held[-1]))
         stages, starts, directions = interpolated(flow, change, mesh)
         rates = self.integrator.rates(stages.reshape(-1, self._size), float(z[-1]))
         velocities = self.period(z) * rates.reshape(stages.shape)
         reference = Reference(mesh, stages, velocities, self.reference(z).scales)
         number = self.generations.add(reference, starts, self.period(z), float(z[-1]))
         there = self.join(starts, self.period(z), float(z[-1]), number)
-        direction = self.join(directions, by_period, float(tangent[-1]))
+        direction = self.join(directions, float(held[-3]), float(held[-1]))
+        if tangent is None:
+            direction[-1] = 1.0
         return self._polished(there, direction), direction
 
     def _polished(self, z: Array, tangent: Array) -> Array:

@@ -90,6 +90,8 @@ class Branch:
         How: "shooting", ...
     profiles : dict of str to Profile
         One period of the orbit at special points, under their names.
+    connected : bool
+        Whether it is connected to the first branch of the diagram through special points.
 
     Raises
     ------
@@ -115,6 +117,7 @@ class Branch:
     special: tuple[SpecialPoint, ...] = ()
     method: str = ""
     profiles: Mapping[str, Profile] = field(default_factory=dict)
+    connected: bool = True
 
     def __post_init__(self) -> None:
         """Bring the columns to their types and check that they fit together."""

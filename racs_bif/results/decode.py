@@ -42,6 +42,7 @@ def decode_branch(node: Node) -> Branch:
         labels=words_array(node.variables["label"]),
         stopped=str(node.attributes["stopped"]),
         early=bool(node.attributes["early"]),
+        connected=bool(node.attributes["connected"]),
         system=_decode_system(node.groups["system"]),
         state_names=state_names,
         states=states,

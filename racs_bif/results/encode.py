@@ -42,6 +42,7 @@ def encode_branch(branch: Branch) -> Node:
             "kind": branch.kind,
             "stopped": branch.stopped,
             "early": int(branch.early),
+            "connected": int(branch.connected),
             "method": branch.method,
             "title": f"{branch.kind} branch {branch.name} of {branch.system.model}",
         }

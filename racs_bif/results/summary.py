@@ -138,6 +138,7 @@ def _branch(branch: Branch) -> dict[str, object]:
         "points": len(branch),
         "stopped": branch.stopped,
         "early": branch.early,
+        "connected": branch.connected,
         "method": branch.method,
         "stability": [
             {

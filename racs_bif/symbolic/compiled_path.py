@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.errors import ParameterError, UsageError
+from racs_bif.symbolic.jets import multilinear
 from racs_bif.symbolic.model import find_parameter
 from racs_bif.symbolic.paths import ParameterPath
 
@@ -74,6 +75,26 @@ class CompiledPath(ParameterPath):
             slope = 1.0 if k == index else 0.0
             dp[place] = self.compiled.inverse_slope(j, p, float(values[k]), dp, slope)
         return dp
+
+    def bend(self, active: ArrayLike, first: int, second: int) -> Array:
+        """Return the second derivative (np,) of `vector` by two active parameters."""
+        values = np.atleast_1d(np.asarray(active, dtype=float))
+        base = [p.name for p in self.compiled.parameters]
+        derived = [d.name for d in self.compiled.derived]
+        moved = np.zeros((len(base) + len(self.compiled.elements), 4))
+        moved[: len(base), 0] = self.vector(values)
+        # Coefficients of 1, t, s, t s.
+        wanted = [[value, k == first, k == second, 0.0] for k, value in enumerate(values)]
+        for k, name in enumerate(self.names):
+            if name in base:
+                moved[base.index(name)] = wanted[k]
+        active = [k for k, name in enumerate(self.names) if name in derived]
+        for k in active * len(active):  # as above
+            j = derived.index(self.names[k])
+            value = np.array([wanted[k]], dtype=float)
+            row = self.compiled.expand(f"inverse{j}", multilinear(2), moved, value)[0]
+            moved[base.index(self.compiled.derived[j].sets)] = row.real
+        return np.asarray(moved[: len(base), 3])
 
 
 def assign(compiled: CompiledModel, values: Array, wanted: dict[str, float]) -> Array:

@@ -8,11 +8,10 @@ Derivatives*, SIAM 2008, chapter 13). Slower than the compiled forms, for what i
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 from itertools import product
 from types import SimpleNamespace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,9 @@ from numpy.typing import NDArray
 from racs_bif.errors import ConvergenceError
 from racs_bif.symbolic.kernels import SCALAR
 from racs_bif.symbolic.series import ELEMENTARY, power
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Coefficients = NDArray[np.float64] | NDArray[np.complex128]
 Monomial = tuple[int, ...]

@@ -42,6 +42,7 @@ def read_law(output: str, law: sp.Expr) -> tuple[PowerSum, PowerSum]:
     """
     import sympy as sp
 
+    _check_functions(output, law)
     names = sorted({symbol.name for symbol in law.free_symbols} | {LAPLACE})
     positive = {name: sp.Symbol(name, positive=True) for name in names}
     plain = {symbol: positive[symbol.name] for symbol in law.free_symbols}
@@ -51,6 +52,23 @@ def read_law(output: str, law: sp.Expr) -> tuple[PowerSum, PowerSum]:
     return (
         _power_sum(output, law, numerator, s, back),
         _power_sum(output, law, denominator, s, back),
+    )
+
+
+def _check_functions(output: str, law: sp.Expr) -> None:
+    """Refuse functions of s before s is taken for positive, where the modulus of s is s."""
+    import sympy as sp
+
+    for part in sp.preorder_traversal(law):
+        plain = part.is_Add or part.is_Mul or part.is_Pow or part.is_Atom
+        if not plain and any(symbol.name == LAPLACE for symbol in part.free_symbols):
+            raise _refusal(output, law)
+
+
+def _refusal(output: str, law: sp.Expr) -> ModelError:
+    return ModelError(
+        f"law of '{output}', {law}, is not a quotient of sums of powers of s; "
+        "write it as a sum of coefficients times s**order over another such sum"
     )
 
 
@@ -65,11 +83,7 @@ def _power_sum(
         rest = sp.powsimp(rest, combine="exp")
         base, exponent = rest.as_base_exp() if rest != 1 else (s, sp.Integer(0))
         if base != s or exponent.has(s):
-            msg = (
-                f"law of '{output}', {law}, is not a quotient of sums of powers of s; "
-                "write it as a sum of coefficients times s**order over another such sum"
-            )
-            raise ModelError(msg)
+            raise _refusal(output, law)
         terms[exponent] = terms.get(exponent, sp.Integer(0)) + coefficient
     ordered = sorted(terms, key=sp.default_sort_key)
     return PowerSum(

@@ -292,7 +292,7 @@ def _expression(model: str, place: str, value: object) -> sp.Expr:
         expression = sp.sympify(value, strict=True)
     except (sp.SympifyError, TypeError):
         expression = None
-    if not isinstance(expression, sp.Expr):
+    if not isinstance(expression, sp.Expr) or expression.is_Matrix:
         msg = f"model '{model}': '{place}' is {type(value).__name__}, it must be a sympy expression"
         raise ModelError(msg)
     return expression

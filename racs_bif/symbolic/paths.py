@@ -33,6 +33,14 @@ class ParameterPath(ABC):
     def direction(self, active: ArrayLike, index: int = 0) -> Array:
         """Return the derivative (np,) of `vector` with respect to one active parameter."""
 
+    def bend(self, active: ArrayLike, first: int, second: int) -> Array:
+        """Return the second derivative (np,) of `vector` by two active parameters.
+
+        By default zero: paths along base parameters are straight.
+        """
+        del first, second
+        return np.zeros(len(self.vector(active)))
+
 
 @dataclass(frozen=True)
 class BasePath(ParameterPath):

@@ -7,11 +7,12 @@ A. Griewank and A. Walther, *Evaluating Derivatives*, SIAM 2008, chapter 13. A l
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Series = list[float]
-
 
 
 def _to_power(a: Series, exponent: float) -> Series:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -42,6 +42,8 @@ class _Search:
     at: tuple[float, ...]
     progress: Callable[[Point], None] | None
     traces: list[Trace] = field(default_factory=list)
+    connected: list[bool] = field(default_factory=list)
+    probing: bool = False
 
     def follow(self, z: Array, tangent: Array | None = None) -> None:
         """Trace the branch through z, and then every branch that crosses it."""
@@ -59,6 +61,7 @@ class _Search:
         if len(found.points) < 2 or self._known(found):
             return
         self.traces.append(found)
+        self.connected.append(not self.probing)
         for special in found.special:
             if special.label == "BP":
                 self.follow(special.z, np.asarray(special.data["other_tangent"]))
@@ -90,6 +93,7 @@ class _Search:
 
     def probe(self, value: float) -> None:
         """Look for equilibria at a value that no known branch passes, and follow them."""
+        self.probing = True
         p = self.system.path(self.parameter).vector(value)
         for spread in _SPREADS:
             known = self.states_at(value)
@@ -168,5 +172,8 @@ def all_equilibria(  # noqa: PLR0913 - each is one choice of the user's
         for value in np.linspace(low + inset, high - inset, probes):
             search.probe(float(value))
     problem = equilibrium_problem(system, parameter)
-    branches = [as_branch(system, problem, found, (low, high)) for found in search.traces]
+    branches = [
+        replace(as_branch(system, problem, found, (low, high)), connected=connected)
+        for found, connected in zip(search.traces, search.connected, strict=True)
+    ]
     return Diagram(*branches)

@@ -92,7 +92,7 @@ def continue_equilibria(  # noqa: PLR0913 - each is one choice of the user's
 
 def equilibrium_problem(system: System, parameter: str) -> EquilibriumProblem:
     """Return the equilibria of a system along one parameter, its outputs as measures."""
-    return EquilibriumProblem(system.field, system.path(parameter), _outputs(system))
+    return EquilibriumProblem(system.field, system.path(parameter), outputs_of(system))
 
 
 def follow(  # noqa: PLR0913 - what a branch is made of
@@ -155,7 +155,9 @@ def check_span(
     return low, high
 
 
-def _outputs(system: System) -> Callable[[Array, Array], dict[str, float]]:
+def outputs_of(system: System) -> Callable[[Array, Array], dict[str, float]]:
+    """Return the function of states (n,) and base parameters (np,) that gives a system's outputs."""
+
     def outputs(x: Array, p: Array) -> dict[str, float]:
         frame = system.field.frame(p)
         values = system.compiled.output_values(system.field.core_point(x, p), frame.P)

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from racs_bif.continuation.points import SpecialPoint as RawPoint
-from racs_bif.continuation.problem import Problem
-from racs_bif.fractional.system import System
-from racs_bif.symbolic.field import Array
+from racs_bif.equilibria.curve_problem import CurveProblem
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import SpecialPoint as RawPoint
+    from racs_bif.continuation.problem import Problem
+    from racs_bif.fractional.system import System
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True)
@@ -34,6 +38,13 @@ class Origin:
     @property
     def parameters(self) -> Array:
         """Base parameters (np,) at the point."""
-        path = self.problem.path  # type: ignore[attr-defined] - every problem of ours has one
-        vector: Array = path.vector(self.raw.z[-1])
+        path = self.problem.path  # type: ignore[attr-defined] # as all of ours have
+        vector: Array = path.vector(self.raw.z[-len(path.names) :])
         return vector
+
+    @property
+    def equilibrium(self) -> Array:
+        """Realised states (n,) at the point, where it lies on a branch or curve of equilibria."""
+        if isinstance(self.problem, CurveProblem):
+            return self.problem.realised(self.raw.z)[1]
+        return self.raw.z[:-1]

@@ -125,7 +125,8 @@ def test_pitchfork_from_both_of_its_branches(kinds, pitchfork):
     curved = trace(pitchfork, [1, 1], (-1, 1), detectors)
     assert {special.label for special in curved.special} == {"LP", "BP"}
     for special in curved.special:
-        np.testing.assert_allclose(special.z, 0, atol=LOCATED)
+        # The tangent that the fold is judged by is ill-determined where branches meet.
+        np.testing.assert_allclose(special.z, 0, atol=1e-8)
     np.testing.assert_allclose(curved.points[-1].z, [-1, 1], atol=1e-12)
 
 

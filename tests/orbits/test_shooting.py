@@ -121,7 +121,7 @@ def test_adapted_mesh_resolves_a_relaxation_orbit(relaxed):
     uniform = z
     z, tangent = start.problem.adapt(z, start.problem.tangent(z, hold))
     mesh = start.problem.reference(z).mesh
-    adapted = start.problem.on_mesh(uniform, hold, mesh)[0]  # at the same parameter
+    adapted = start.problem.on_mesh(uniform, mesh)[0]  # at the same parameter
     after = abs(start.problem.period(adapted) - 11.61223066772)
     assert mesh.steps <= 200
     assert adapted[-1] == 5.0
@@ -197,14 +197,13 @@ def test_earlier_solutions_keep_their_mesh(relaxed):
     hold = np.zeros(len(z))
     hold[-1] = 1.0
     profile = problem.orbit(z).profile
-    latest = z
+    later = [z]
     for _ in range(9):  # more than are kept whole
-        latest, _ = problem.adapt(latest, problem.tangent(latest, hold))
-    assert problem.reference(latest).mesh is not problem.reference(z).mesh
+        later.append(problem.adapt(later[-1], problem.tangent(later[-1], hold))[0])
+    assert problem.reference(later[-1]).mesh is not problem.reference(z).mesh
     np.testing.assert_allclose(problem.orbit(z).profile, profile, atol=1e-10)
-    again = latest.copy()
-    again[-2] = 2  # an old one, which is computed again
-    assert np.abs(problem.residual(again)).max() < 1e-6
+    for orbit in later:  # old phase conditions are computed again
+        assert np.abs(problem.residual(orbit)).max() < 1e-8
 
 
 def test_unknowns_of_another_problem_are_refused(on_circle):
@@ -262,3 +261,15 @@ def test_settings_are_checked(change, message):
 def test_samples_are_checked(hopf, times, profile, message):
     with pytest.raises(UsageError, match=message):
         from_samples(*hopf, times, profile, LAM)
+
+
+def test_segments_are_halved_where_the_flow_grows(relaxed):
+    start = relaxed(2.0, segments=1, growth=1.5)
+    problem, z = start.problem, solved(start)
+    hold = np.zeros(len(z))
+    hold[-1] = 1.0
+    finer, tangent = problem.adapt(z, problem.tangent(z, hold))
+    assert problem.reference(finer).mesh.segments == 2
+    assert len(finer) == len(tangent) == len(z) + 2
+    assert problem.period(finer) == pytest.approx(problem.period(z), rel=1e-5)
+    assert np.abs(problem.residual(finer)).max() < 1e-8

@@ -57,7 +57,8 @@ def test_a_branch_that_is_not_taken_may_be_undefined(compiled):
 def test_parameter_expressions_are_computed_once(compiled):
     core = compiled({"x": "exp(a)*b**2*x + sin(a*x)"}, parameters={"a": 1.0, "b": 2.0})
     text = core.sources.main
-    prepare, body = re.search(r"def core_prepare\(p\):(.*?)def core\(c, x\):(.*?)def ", text, re.S).groups()
+    pattern = r"def core_prepare\(p\):(.*?)def core\(c, x\):(.*?)def "
+    prepare, body = re.search(pattern, text, re.DOTALL).groups()
     assert "exp_" in prepare
     assert "exp_" not in body
     assert "sin_" in body
@@ -118,7 +119,7 @@ def test_hill_function_with_a_parameter_order_at_zero(compiled):
 
 
 def test_long_sums_and_deep_nests_compile(compiled):
-    terms = " + ".join(f"sin({k}*x)" for k in range(1, 301))
+    terms = " + ".join(f"sin({k}*x)" for k in range(1, 151))
     nest = "x"
     for _ in range(60):
         nest = f"sin({nest})"
@@ -128,5 +129,5 @@ def test_long_sums_and_deep_nests_compile(compiled):
     for _ in range(60):
         expected = np.sin(expected)
     value = core.core(at, np.array([]))
-    assert value[0] == pytest.approx(np.sin(0.3 * np.arange(1, 301)).sum(), abs=1e-12)
+    assert value[0] == pytest.approx(np.sin(0.3 * np.arange(1, 151)).sum(), abs=1e-12)
     assert value[1] == pytest.approx(expected, rel=1e-14)

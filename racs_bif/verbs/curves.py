@@ -1,0 +1,286 @@
+"""Curves of special equilibria in two parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from racs_bif.continuation.settings import StepSettings
+from racs_bif.continuation.trace import trace
+from racs_bif.equilibria.bogdanov_takens import BogdanovTakensOnFold, BogdanovTakensOnHopf
+from racs_bif.equilibria.branch_point_curve import BranchPointCurve
+from racs_bif.equilibria.cusp import Cusp
+from racs_bif.equilibria.double_hopf import DoubleHopf
+from racs_bif.equilibria.exact_fold_curve import ExactFoldCurve
+from racs_bif.equilibria.exact_hopf_curve import ExactHopfCurve
+from racs_bif.equilibria.fold_curve import FoldCurve
+from racs_bif.equilibria.generalised_hopf import GeneralisedHopf
+from racs_bif.equilibria.hopf_curve import HopfCurve
+from racs_bif.equilibria.zero_hopf import PairOnFold, ZeroOnHopf
+from racs_bif.errors import UsageError
+from racs_bif.fractional.static import StaticField
+from racs_bif.numerics.threads import single_threaded
+from racs_bif.results.branch import Branch
+from racs_bif.results.provenance import describe
+from racs_bif.results.special import SpecialPoint
+from racs_bif.verbs import assemble
+from racs_bif.verbs.equilibria import check_span, outputs_of
+from racs_bif.verbs.origin import Origin
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Point, Trace
+    from racs_bif.continuation.points import SpecialPoint as RawPoint
+    from racs_bif.continuation.problem import Detector
+    from racs_bif.equilibria.curve_problem import CurveProblem, Span
+    from racs_bif.fractional.system import System
+    from racs_bif.symbolic.field import Array
+
+_KINDS: Final = {
+    "hopf": ("H", "GH", "BT", "ZH", "HH"),
+    "fold": ("LP", "CP", "BT", "ZH"),
+    "bp": ("BP",),
+}
+"""Which points can start which curve."""
+_NAMES: Final = {"hopf": "HC", "fold": "LC", "bp": "BC"}
+_SETTINGS: Final = StepSettings(maximum=1 / 40, angle=0.2)
+"""Steps in a plane turn less than along a branch, so that pictures of curves are smooth."""
+_OPERATORS: Final = ("realised", "exact")
+
+
+@single_threaded
+def continue_curve(  # noqa: PLR0913 - each is one choice of the user's
+    point: SpecialPoint,
+    parameters: tuple[str, str],
+    spans: tuple[Span | None, Span | None] | Mapping[str, Span] | None = None,
+    *,
+    kind: str | None = None,
+    operator: str = "realised",
+    settings: StepSettings | None = None,
+    progress: Callable[[Point], None] | None = None,
+) -> Branch:
+    """Follow a special equilibrium in two parameters.
+
+    Codimension-two points are located: CP and ZH and BT on a fold curve; BT, GH, ZH and HH on a Hopf
+    curve. Beyond BT a Hopf curve goes on as a curve of neutral saddles, measure ``neutral`` 1.
+
+    Parameters
+    ----------
+    point : SpecialPoint
+        Where to start, a point of `continue_equilibria` or of another curve.
+    parameters : (str, str)
+        Active parameters, base or derived.
+    spans : pair or mapping of (float, float), optional
+        Their intervals, SI. Where left out: that of the branch that the point lies on, or a tenth
+        to ten times the value at the point, within the model's validity.
+    kind : {"hopf", "fold", "bp"}, optional
+        Which curve; by default the one of the point's label, and at a point where two meet the
+        one that it was not found on. ``"hopf2"`` is the other Hopf curve through a double Hopf
+        point.
+    operator : {"realised", "exact"}
+        What a model with fractional elements is followed on: its realisation, or the exact
+        characteristic matrix.
+    settings : StepSettings, optional
+        Step control.
+    progress : callable, optional
+        Called with every new point.
+
+    Returns
+    -------
+    Branch
+        Of kind ``curve``; its points carry omega and l1 of a Hopf curve as measures.
+
+    Raises
+    ------
+    UsageError
+        If no such curve starts at the point, or a span is empty or cannot be guessed.
+    ParameterError
+        If a parameter is unknown or a span leaves the model's validity.
+    ConvergenceError
+        If no solution is found at the start.
+    """
+    origin, chosen = _origin(point), _kind(point, kind)
+    if operator not in _OPERATORS:
+        msg = f"unknown operator '{operator}'; there are: {', '.join(_OPERATORS)}"
+        raise UsageError(msg)
+    system = replace(origin.system, values=origin.parameters)
+    first, second = _spans(system, origin, parameters, spans)
+    start = _Start(system, origin.equilibrium, parameters, first, _frequency(point, kind))
+    problem, z = start.problem(chosen, operator)
+    detectors = _detectors(chosen, operator)
+    found = trace(problem, z, second, detectors, settings or _SETTINGS, progress=progress)
+    return _branch(system, problem, found, second)
+
+
+def _origin(point: SpecialPoint) -> Origin:
+    if not isinstance(point.origin, Origin):
+        msg = (
+            f"{point.name} was loaded from a file; compute its branch again to start a curve there"
+        )
+        raise UsageError(msg)
+    return point.origin
+
+
+def _kind(point: SpecialPoint, wanted: str | None) -> str:
+    """Return the kind of curve to start.
+
+    Raises
+    ------
+    UsageError
+        If the point cannot start it; the message says which can.
+    """
+    possible = [kind for kind, labels in _KINDS.items() if point.label in labels]
+    if not possible:
+        labels = ", ".join(sorted({label for labels in _KINDS.values() for label in labels}))
+        msg = f"no curve of equilibria starts at {point.name} ({point.title}); these can: {labels}"
+        raise UsageError(msg)
+    if wanted is None:
+        own = getattr(_origin(point).problem, "kind", None)
+        others = [kind for kind in possible if kind != own]
+        return (others or possible)[0]
+    plain = wanted.removesuffix("2")
+    if plain not in _KINDS:
+        msg = f"unknown kind of curve '{wanted}'; there are: {', '.join(_KINDS)}"
+        raise UsageError(msg)
+    if plain not in possible or (wanted != plain and point.label != "HH"):
+        can = ", ".join(("HH",) if wanted == "hopf2" else _KINDS[plain])
+        msg = f"a {wanted} curve cannot start at {point.name} ({point.title}); these can: {can}"
+        raise UsageError(msg)
+    return plain
+
+
+def _frequency(point: SpecialPoint, kind: str | None) -> float:
+    """Return the frequency of the pair to follow; zero at BT and where there is none.
+
+    From a double Hopf point the default is the pair of the other curve.
+    """
+    if point.label == "HH" and kind in {None, "hopf2"}:
+        return float(point.omega2)  # type: ignore[arg-type] # a number
+    return point.omega if "omega" in point.data else 0.0
+
+
+def _spans(
+    system: System,
+    origin: Origin,
+    parameters: Sequence[str],
+    spans: tuple[Span | None, Span | None] | Mapping[str, Span] | None,
+) -> tuple[Span, Span]:
+    if len(parameters) != 2 or parameters[0] == parameters[1]:
+        msg = f"a curve needs two different parameters, not {', '.join(parameters)}"
+        raise UsageError(msg)
+    if isinstance(spans, Mapping):
+        given = [spans.get(name) for name in parameters]
+    else:
+        given = list(spans or (None, None))
+    names = origin.problem.path.names  # type: ignore[attr-defined] # as all of ours have
+    found = []
+    for name, span in zip(parameters, given, strict=True):
+        known = origin.span if len(names) == 1 and name == names[0] else None
+        low, high = check_span(system, name, span or known or _guessed(system, name))
+        value = system.parameters[name]
+        if not low <= value <= high:
+            msg = f"the span {low:g} to {high:g} of '{name}' leaves out the start at {value:g}; widen it"
+            raise UsageError(msg)
+        found.append((low, high))
+    return found[0], found[1]
+
+
+def _guessed(system: System, name: str) -> Span:
+    value = system.parameters[name]
+    if not np.isfinite(value) or value == 0.0:
+        msg = f"'{name}' is {value:g}, which gives no span to follow it over; give its span"
+        raise UsageError(msg)
+    valid = next(p.valid for p in system.parameter_table if p.name == name)
+    margin = 1e-3 * abs(value)
+    low, high = sorted((0.1 * value, 10.0 * value))
+    return max(low, valid[0] + margin), min(high, valid[1] - margin)
+
+
+@dataclass(frozen=True)
+class _Start:
+    """Where a curve starts."""
+
+    system: System
+    x: Array
+    parameters: tuple[str, str]
+    span: Span
+    omega: float
+
+    def problem(self, kind: str, operator: str) -> tuple[CurveProblem, Array]:
+        """Return the problem and its first point."""
+        system, omega = self.system, self.omega
+        path = system.path(*self.parameters)
+        values = [system.parameters[name] for name in self.parameters]
+        field, own = system.field, len(system.states)
+        common = (path, self.span)
+        if kind == "hopf" and operator == "realised":
+            z = np.concatenate([self.x, [omega**2], values])
+            return HopfCurve(field, *common, own, _outputs(system)), z
+        if kind == "fold" and operator == "realised":
+            z = np.concatenate([self.x, values])
+            return FoldCurve(field, *common, own, _outputs(system)), z
+        static, X = StaticField(system.exact), system.exact_point(self.x, system.values)
+        if kind == "hopf":
+            if not omega > 0.0:
+                msg = "the exact Hopf curve ends where omega is zero; follow the realised one from there"
+                raise UsageError(msg)
+            z = np.concatenate([X, [omega], values])
+            return ExactHopfCurve(static, field, *common, _outputs(system)), z
+        if kind == "fold":
+            return ExactFoldCurve(static, field, *common, _outputs(system)), np.append(X, values)
+        z = np.concatenate([X, [0.0], values])
+        return BranchPointCurve(static, field, *common, _outputs(system)), z
+
+
+def _detectors(kind: str, operator: str) -> list[Detector]:
+    if kind == "hopf":
+        further = [BogdanovTakensOnHopf()] if operator == "realised" else []
+        return [*further, GeneralisedHopf(), ZeroOnHopf(), DoubleHopf()]
+    if kind == "fold":
+        return [Cusp(), BogdanovTakensOnFold(), PairOnFold()]
+    return []
+
+
+def _outputs(system: System) -> Callable[[Array, Array], dict[str, float]] | None:
+    return outputs_of(system) if system.outputs else None
+
+
+def _branch(system: System, problem: CurveProblem, found: Trace, span: Span) -> Branch:
+    sentence, early = assemble.stopped(found)
+    name = f"{_NAMES[problem.kind]}1"
+    columns = assemble.columns(found.points) | {
+        "values": np.array([p.z[-2:] for p in found.points])
+    }
+    return Branch(
+        name=name,
+        kind="curve",
+        parameters=problem.path.names,
+        state_names=system.field.states,
+        states=np.array([problem.realised(p.z)[1] for p in found.points]),
+        measures=assemble.measures(found.points),
+        special=tuple(_special(system, problem, raw, span, name) for raw in found.special),
+        stopped=sentence,
+        early=early,
+        system=describe(system),
+        method=problem.name,
+        **columns,
+    )
+
+
+def _special(
+    system: System, problem: CurveProblem, raw: RawPoint, span: Span, branch: str
+) -> SpecialPoint:
+    x = problem.realised(raw.z)[1]
+    data: dict[str, Any] = assemble.numbers(raw.data)
+    return SpecialPoint(
+        label=raw.label,
+        name=raw.name,
+        branch=branch,
+        parameters=dict(zip(problem.path.names, raw.z[-2:], strict=True)),
+        state=dict(zip(system.states, x, strict=False)),
+        data=data,
+        index=raw.index,
+        origin=Origin(system, problem, raw, span),
+    )

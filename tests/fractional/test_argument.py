@@ -1,0 +1,101 @@
+import numpy as np
+import pytest
+
+from racs_bif.fractional.argument import count_right
+from racs_bif.fractional.characteristic import Characteristic
+from racs_bif.fractional.laws import PowerSum
+from racs_bif.fractional.mikhailov import mikhailov
+from racs_bif.fractional.roots import roots_right
+
+
+def powers(coefficients, exponents):
+    return PowerSum(np.array(coefficients, dtype=float), np.array(exponents, dtype=float))
+
+
+def ordinary(matrix):
+    n = len(matrix)
+    return Characteristic([powers([1.0], [1.0])] * n, [powers([1.0], [0.0])] * n, matrix)
+
+
+def oscillator(shift, omega=1.0):
+    return ordinary(np.array([[shift, omega], [-omega, shift]]))
+
+
+@pytest.mark.parametrize("above", [-30.0, -2.0, -0.4, -1e-3, 0.0, 1e-3, 0.4, 2.0, 30.0])
+def test_count_right_of_any_line(above):
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        matrix = rng.normal(size=(5, 5)) * 3.0
+        number = int((np.linalg.eigvals(matrix).real > above).sum())
+        assert count_right(ordinary(matrix), above).unstable == number
+
+
+@pytest.mark.parametrize("above", [-30.0, -2.0, -0.4, -1e-3, 0.0, 0.4])
+def test_the_cut_is_left_out_of_the_contour(above):
+    ch = Characteristic(
+        [powers([1.0], [1.0])] * 2 + [powers([1.0], [0.0])],
+        [powers([1.0], [0.0])] * 2 + [powers([0.7], [0.37])],
+        np.array([[0.0, 1.0, 0.0], [-4.0, -0.3, -1.0], [1.0, 0.0, 0.0]]),
+    )
+    everything = roots_right(ch, -1e3).roots
+    assert count_right(ch, above).unstable == (everything.real > above).sum()
+
+
+def test_roots_on_the_line_are_reported_not_counted():
+    count = count_right(oscillator(0.0))
+    assert count.unstable == 0
+    assert count.on_line == pytest.approx([1j])
+    count = count_right(oscillator(-0.25), -0.25)
+    assert count.unstable == 0
+    assert count.on_line == pytest.approx([-0.25 + 1j])
+    both = np.zeros((4, 4))
+    both[:2, :2], both[2:, 2:] = [[0.0, 1.0], [-1.0, 0.0]], [[0.5, 3.0], [-3.0, 0.5]]
+    count = count_right(ordinary(both))
+    assert count.unstable == 2
+    assert count.on_line == pytest.approx([1j])
+
+
+@pytest.mark.parametrize("shift", [1e-3, 1e-6, 1e-8])
+def test_a_root_beside_the_axis_is_not_missed(shift):
+    assert count_right(oscillator(shift)).unstable == 2
+    assert count_right(oscillator(-shift)).unstable == 0
+    assert mikhailov(oscillator(shift)).unstable == 2
+    assert mikhailov(oscillator(-shift)).stable
+
+
+def test_mikhailov_says_where_roots_are_on_the_axis():
+    count = mikhailov(oscillator(0.0, 3.0))
+    assert count.unstable is None
+    assert not count.stable
+    assert count.on_axis == pytest.approx([3.0])
+
+
+def test_zero_is_reported_by_both_counts():
+    ch = ordinary(np.array([[0.0, 1.0], [0.0, 2.0]]))
+    assert count_right(ch).at_zero
+    assert count_right(ch).unstable == 1
+    count = mikhailov(ch)
+    assert count.at_zero
+    assert count.unstable == 1
+    assert not mikhailov(ordinary(np.array([[0.0, 1.0], [0.0, -2.0]]))).stable
+
+
+def test_a_law_that_integrates_has_no_root_at_zero_of_its_own():
+    # x' = -w, w = s**-0.6 x: s**1.6 + 1 = 0
+    ch = Characteristic(
+        [powers([1.0], [1.0]), powers([1.0], [0.6])],
+        [powers([1.0], [0.0])] * 2,
+        np.array([[0.0, -1.0], [1.0, 0.0]]),
+    )
+    count = mikhailov(ch)
+    assert not count.at_zero
+    assert count.stable
+    assert roots_right(ch, -2.0).roots[0] == pytest.approx(np.exp(1j * np.pi / 1.6))
+
+
+def test_what_a_count_costs():
+    rng = np.random.default_rng(4)
+    matrix = rng.normal(size=(5, 5)) * 3.0
+    assert count_right(ordinary(matrix)).evaluations < 200
+    assert mikhailov(ordinary(matrix)).evaluations < 150
+    assert count_right(ordinary(matrix)).discrepancy < 0.26

@@ -1,0 +1,74 @@
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+from racs_bif.errors import UsageError
+from racs_bif.fractional.mittag_leffler import mittag_leffler
+
+
+def reference(a, b, z):
+    """The series in as many digits as its cancellation takes."""
+    size = abs(z) ** (1.0 / a)
+    with mpmath.workdps(int(60 + 0.5 * size)):
+        a, b, z = mpmath.mpf(a), mpmath.mpf(b), mpmath.mpc(z)
+        total, k = mpmath.mpf(0), 0
+        while True:
+            term = z**k * mpmath.rgamma(a * k + b)
+            total += term
+            if k > 5 and a * k > size and abs(term) < mpmath.mpf(10) ** -40:
+                return complex(total)
+            k += 1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_against_the_series_in_many_digits(seed):
+    rng = np.random.default_rng(seed)
+    for k in range(40):
+        a = rng.uniform(0.15, 2.0)
+        b = rng.choice([1.0, a, a + 1.0, rng.uniform(-0.9, 3.0)])
+        largest = min(30.0, 40.0**a)
+        z = rng.uniform(-largest, min(largest, 15.0**a))
+        if k % 2:
+            angle = rng.uniform(-math.pi, math.pi)
+            z = rng.uniform(0.1, min(largest, 20.0**a)) * np.exp(1j * angle)
+        expected = reference(a, b, z)
+        error = abs(complex(mittag_leffler(a, b, z)) - expected)
+        assert error < 2e-13 * max(abs(expected), 1.0 / (1.0 + abs(z)))
+
+
+def test_elementary_cases():
+    x = np.linspace(-6.0, 4.0, 41)
+    assert mittag_leffler(1.0, 1.0, x) == pytest.approx(np.exp(x), rel=1e-13)
+    assert mittag_leffler(2.0, 1.0, -(x**2)) == pytest.approx(np.cos(x), abs=2e-13)
+    assert mittag_leffler(1.0, 2.0, x + 0.03) == pytest.approx(
+        np.expm1(x + 0.03) / (x + 0.03), rel=1e-12
+    )
+    from scipy.special import erfcx
+
+    y = np.linspace(0.0, 50.0, 40)
+    assert mittag_leffler(0.5, 1.0, -y) == pytest.approx(erfcx(y), rel=1e-12)
+
+
+def test_far_out_it_is_its_asymptotic_series():
+    z = np.array([-1e6, -1e9])
+    assert mittag_leffler(0.5, 1.0, z) == pytest.approx(
+        -1.0 / (z * math.gamma(0.5)) - 1.0 / (z**3 * math.gamma(-0.5)), rel=1e-11
+    )
+
+
+def test_shapes_types_and_overflow():
+    assert mittag_leffler(0.7, 1.0, np.zeros((2, 3))).shape == (2, 3)
+    assert not np.iscomplexobj(mittag_leffler(0.7, 1.0, [-3.0, 0.5, 2.0]))
+    assert np.iscomplexobj(mittag_leffler(0.7, 1.0, 1.0j))
+    assert mittag_leffler(0.5, 1.0, 1e3) == math.inf
+    assert mittag_leffler(0.5, 0.0, 0.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "z"), [(0.0, 1.0, 1.0), (2.5, 1.0, 1.0), (0.5, 99.0, 1.0), (0.5, 1.0, math.nan)]
+)
+def test_what_it_refuses(a, b, z):
+    with pytest.raises(UsageError):
+        mittag_leffler(a, b, z)

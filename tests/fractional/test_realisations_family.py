@@ -1,0 +1,258 @@
+"""Every realisation on laws of every kind: static gain, poles, error, derivative, refusals."""
+
+import numpy as np
+import pytest
+
+from racs_bif.errors import ParameterError, UsageError
+from racs_bif.fractional.aaa import Aaa
+from racs_bif.fractional.charef import Charef
+from racs_bif.fractional.continued_fraction import ContinuedFraction
+from racs_bif.fractional.fitted import Fitted
+from racs_bif.fractional.laws import Law, PowerSum
+from racs_bif.fractional.matsuda import Matsuda
+from racs_bif.fractional.modified_oustaloup import ModifiedOustaloup
+from racs_bif.fractional.nonnegative import NonNegative
+from racs_bif.fractional.realisations import REALISATIONS, choose_realisation
+from racs_bif.fractional.vector_fitting import VectorFitting
+
+
+def law(numerator, denominator, name, *, feedthrough=True):
+    """Return the law of two lists of (coefficient, exponent)."""
+    n, d = np.array(numerator, dtype=float).T, np.array(denominator, dtype=float).T
+    return Law(PowerSum(*n), PowerSum(*d), name, feedthrough)
+
+
+LAWS = {
+    "vehicle": law([(1.0, 0.0), (1.0, 0.7)], [(1.0, 0.0), (1.0, 0.3)], "vehicle"),
+    "springpot": law([(2.0, 0.5)], [(1.0, 0.0)], "springpot"),
+    "zener": law([(1.0, 0.0), (5.0, 0.5)], [(1.0, 0.0), (1.0, 0.5)], "zener"),
+    "integrating": law([(1.0, 0.0), (2.0, 0.6)], [(1.0, 0.6)], "integrating"),
+    "proper": law([(1.0, 0.0)], [(1.0, 0.0), (1.0, 0.6)], "proper", feedthrough=False),
+    "integral": law([(1.0, 0.0)], [(1.0, 0.6)], "integral", feedthrough=False),
+}
+NARROW = (1.0, 60.0)
+WIDE = (1e-3, 1e4)
+# worst error between 3 and 30 rad/s over the laws that it takes
+ALL = {
+    "fitted": (Fitted(band=NARROW, omega=9.0), 8e-3),
+    "nonnegative": (NonNegative(band=NARROW), 2e-3),
+    "vector-fitting": (VectorFitting(band=NARROW, order=8), 1e-4),
+    "aaa": (Aaa(band=NARROW, order=8), 8e-3),
+    "matsuda": (Matsuda(band=NARROW, sections=7), 1e-3),
+    "continued-fraction": (ContinuedFraction(band=NARROW, sections=8), 1e-3),
+    "charef": (Charef(band=WIDE, sections=14), 2.5e-2),
+    "modified-oustaloup": (ModifiedOustaloup(band=WIDE, sections=14), 2.5e-2),
+}
+POWERS = ("matsuda", "continued-fraction", "charef", "modified-oustaloup")
+JUMPING = ("nonnegative", "vector-fitting", "aaa")
+REFUSED = {(name, kind) for name in POWERS for kind in ("proper", "integral")}
+REFUSED |= {("nonnegative", "vehicle")}
+TAKEN = [(name, kind) for name in ALL for kind in LAWS if (name, kind) not in REFUSED]
+
+
+def poles(realised, one):
+    """Return the poles but for the one at 0 of a law that integrates."""
+    found = np.linalg.eigvals(realised.A)
+    if one.integrates:
+        k = np.argmin(np.abs(found))
+        assert abs(found[k]) < 1e-9
+        found = np.delete(found, k)
+    return found
+
+
+@pytest.mark.parametrize(("name", "kind"), TAKEN)
+def test_static_gain_is_exact(name, kind):
+    realised, one = ALL[name][0].realise(LAWS[kind]), LAWS[kind]
+    if one.integrates:
+        below = np.abs(realised(1j * np.array([1e-7, 1e-8])))
+        assert below[1] / below[0] == pytest.approx(10.0, rel=1e-3)  # an integrator
+    else:
+        scale = np.abs(realised(1j * np.array([60.0])))[0]
+        assert realised(0.0)[0] == pytest.approx(one.static_gain, rel=1e-11, abs=1e-12 * scale)
+
+
+@pytest.mark.parametrize(("name", "kind"), TAKEN)
+def test_poles_are_real_and_negative(name, kind):
+    found = poles(ALL[name][0].realise(LAWS[kind]), LAWS[kind])
+    assert np.all(found.real < 0.0)
+    assert np.all(np.abs(found.imag) < 1e-9 * np.abs(found))
+
+
+@pytest.mark.parametrize(("name", "kind"), TAKEN)
+def test_inner_band_error(name, kind):
+    settings, bound = ALL[name]
+    s = 1j * np.geomspace(3.0, 30.0, 60)
+    error = np.abs(settings.realise(LAWS[kind])(s) / LAWS[kind](s) - 1.0).max()
+    assert error < bound
+
+
+@pytest.mark.parametrize(("name", "kind"), [pair for pair in TAKEN if "pro" in pair[1]])
+def test_strictly_proper_laws_have_no_feedthrough(name, kind):
+    assert ALL[name][0].realise(LAWS[kind]).D == 0.0
+
+
+def moved(one, direction, h):
+    """Return a law moved along a direction."""
+
+    def side(a, b):
+        return PowerSum(a.coefficients + h * b.coefficients, a.exponents + h * b.exponents)
+
+    return Law(
+        side(one.numerator, direction.numerator),
+        side(one.denominator, direction.denominator),
+        one.name,
+        one.feedthrough,
+    )
+
+
+def some_direction(one):
+    """Return a direction in which every coefficient and every order but 0 moves."""
+
+    def side(powers, c, e):
+        return PowerSum(c * powers.coefficients, np.where(powers.exponents > 0.0, e, 0.0))
+
+    return Law(side(one.numerator, 0.3, 0.5), side(one.denominator, 0.2, -0.4), one.name)
+
+
+@pytest.mark.parametrize(("name", "kind"), [pair for pair in TAKEN if pair[0] not in JUMPING])
+def test_derivative_against_differences(name, kind):
+    settings, one = ALL[name][0], LAWS[kind]
+    if name == "matsuda":
+        settings = Matsuda(band=NARROW, sections=4)  # poles of many sections carry few digits
+    direction, h = some_direction(one), 1e-5
+    exact = settings.derivative(one, direction)
+    ahead, behind = (settings.realise(moved(one, direction, k)) for k in (h, -h))
+    for part in "ABCD":
+        difference = (getattr(ahead, part) - getattr(behind, part)) / (2.0 * h)
+        scale = np.abs(difference).max() if np.any(difference) else 1.0
+        np.testing.assert_allclose(getattr(exact, part), difference, rtol=0, atol=1e-5 * scale)
+
+
+@pytest.mark.parametrize("name", JUMPING)
+def test_derivative_refused_where_it_jumps(name):
+    one = LAWS["zener"]
+    with pytest.raises(UsageError, match="use --realisation fitted, diffusive, matsuda"):
+        ALL[name][0].derivative(one, some_direction(one))
+
+
+@pytest.mark.parametrize(("name", "kind"), sorted(REFUSED))
+def test_refusals_say_what_to_use(name, kind):
+    with pytest.raises(ParameterError, match="use --realisation fitted or diffusive") as caught:
+        ALL[name][0].realise(LAWS[kind])
+    assert kind in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("order", [1.0, 1.4])
+@pytest.mark.parametrize("name", POWERS)
+def test_orders_beyond_one_refused(name, order):
+    one = law([(1.0, order)], [(1.0, 0.0), (1.0, 0.9)], "steep")
+    with pytest.raises(ParameterError, match=f"'steep' has {order:g};"):
+        ALL[name][0].realise(one)
+
+
+def test_nonnegative_gains():
+    relaxing = NonNegative(band=NARROW).realise(LAWS["zener"])
+    assert np.all(relaxing.C <= 0.0)
+    creeping = NonNegative(band=NARROW).realise(LAWS["proper"])
+    assert np.all(creeping.C >= 0.0)
+    assert pytest.approx(1.0 - relaxing.C.sum()) == relaxing.D
+
+
+def test_nonnegative_keeps_its_number_of_states():
+    settings = NonNegative(band=NARROW, order=12)
+    for order in (0.1, 0.5, 0.9):
+        one = law([(1.0, 0.0), (0.2, order)], [(1.0, 0.0), (1.0, order)], "creep")
+        assert len(settings.realise(one).B) == 12
+
+
+def test_nonnegative_names_the_wrong_rates():
+    with pytest.raises(ParameterError, match="wrong sign") as caught:
+        NonNegative(band=NARROW).realise(LAWS["vehicle"])
+    assert "rad/s" in str(caught.value)
+    negative = law([(1.0, 0.0), (-0.1, 0.4)], [(1.0, 0.0), (1.0, 0.5)], "negative")
+    with pytest.raises(ParameterError, match="negative coefficient"):
+        NonNegative(band=NARROW).realise(negative)
+
+
+def test_continued_fraction_is_a_pade_approximant():
+    # s times the [n-1/n] approximant of s**(a-1): 2n derivatives right at the centre
+    settings = ContinuedFraction(band=(0.1, 10.0), sections=3)
+    power = settings.power(0.4)
+    x = 1.0 + 0.2 * np.exp(2j * np.pi * np.arange(32) / 32.0)
+    values = power.constant + (power.gains * power.rates / (x[:, None] + power.rates)).sum(axis=1)
+    taylor = np.fft.fft(values / x**0.4 - 1.0) / 32.0 / 0.2 ** np.arange(32)
+    assert np.abs(taylor[:6]).max() < 1e-12
+    assert np.abs(taylor[6]) > 1e-6
+
+
+def test_matsuda_meets_its_points():
+    settings = Matsuda(band=(0.1, 10.0), sections=3)
+    power = settings.power(0.4)
+    x = np.append(np.geomspace(0.1, 10.0, 6), 0.0)
+    values = power.constant + (power.gains * power.rates / (x[:, None] + power.rates)).sum(axis=1)
+    np.testing.assert_allclose(values, x**0.4, atol=1e-12)
+
+
+def test_matsuda_refuses_more_points_than_digits():
+    with pytest.raises(ParameterError, match="lower its order"):
+        Matsuda(band=(1.0, 10.0), sections=20).power(0.5)
+
+
+def test_charef_stays_within_its_decibels():
+    # the places follow the straight line of the fractional pole within y decibels, as Charef has it
+    settings, order = Charef(band=(1e-3, 1e3), sections=12), 0.5
+    y = 10.0 * 0.25 * 6.0 / 12.0
+    power = settings.power(order)
+    s = 1j * np.geomspace(0.1, 10.0, 200)
+    values = power.constant + (power.gains * power.rates / (s[:, None] + power.rates)).sum(axis=1)
+    assert np.abs(20.0 * np.log10(np.abs(values / s**order))).max() < y
+
+
+def test_modified_oustaloup_gain_against_common_code():
+    """The common code misses (d/b)**a in the middle of the band."""
+    low, high, a, n = 1e-3, 1e3, 0.7, 13
+    k = np.arange(n)
+    ratio = np.log(high / low) / n
+    zeros = low * np.exp(ratio * (k + 0.5 * (1.0 - a)))
+    poles_ = low * np.exp(ratio * (k + 0.5 * (1.0 + a)))
+    s = np.array([1j])
+    gain = (0.9 * low) ** a * np.prod(poles_ / zeros)
+    ends = (9.0 * s**2 + 10.0 * high * s) / (9.0 * (1.0 - a) * s**2 + 10.0 * high * s + 9.0 * a)
+    common = gain * ends[0] * np.prod((s[0] + zeros) / (s[0] + poles_))
+    assert abs(common / s[0] ** a) == pytest.approx(0.9**a, rel=3e-3)
+    power = ModifiedOustaloup(band=(low, high), sections=n).power(a)
+    mended = power.constant + (power.gains * power.rates / (s[0] + power.rates)).sum()
+    assert mended / s[0] ** a == pytest.approx(1.0, rel=3e-3)
+
+
+def test_vector_fitting_recovers_a_rational_law():
+    # (1 + 2 s) / (1 + s): one pole at -1, whatever the start
+    one = law([(1.0, 0.0), (2.0, 1.0)], [(1.0, 0.0), (1.0, 1.0)], "rational")
+    realised = VectorFitting(band=(0.1, 10.0), order=1).realise(one)
+    assert realised.A[0, 0] == pytest.approx(-1.0, rel=1e-8)
+    assert pytest.approx(2.0, rel=1e-8) == realised.D
+
+
+@pytest.mark.parametrize("name", REALISATIONS)
+def test_table_builds_every_realisation(name):
+    made = choose_realisation(name, (1.0, 60.0))
+    assert made.name == name
+    assert isinstance(made, REALISATIONS[name])
+    assert len(choose_realisation(name, (1.0, 60.0), order=9).realise(LAWS["zener"]).B) >= 9
+
+
+def test_table_refuses():
+    with pytest.raises(UsageError, match="did you mean 'matsuda'"):
+        choose_realisation("matsud", (1.0, 60.0))
+    settings = Charef(band=WIDE)
+    assert choose_realisation(settings, (1.0, 2.0)) is settings
+    assert choose_realisation(None, (1.0, 60.0)).name == "diffusive"
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_settings_are_checked(name):
+    with pytest.raises(UsageError, match="band"):
+        choose_realisation(name, (60.0, 1.0))
+    with pytest.raises(UsageError, match=r"too small|too few"):
+        choose_realisation(name, (1.0, 60.0), order=-1)

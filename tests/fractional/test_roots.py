@@ -1,0 +1,211 @@
+import math
+
+import numpy as np
+import pytest
+
+from racs_bif.errors import ConvergenceError, ParameterError
+from racs_bif.fractional.argument import OnContourError, count_rectangle
+from racs_bif.fractional.beyn import roots_in_disc
+from racs_bif.fractional.characteristic import Characteristic
+from racs_bif.fractional.laws import PowerSum
+from racs_bif.fractional.polish import polish
+from racs_bif.fractional.radii import annulus
+from racs_bif.fractional.roots import characteristic_roots, roots_right
+from racs_bif.shelf.load import load_model
+
+
+def powers(coefficients, exponents):
+    return PowerSum(np.array(coefficients, dtype=float), np.array(exponents, dtype=float))
+
+
+def scalar(coefficients, exponents):
+    zero = powers([0.0], [0.0])
+    return Characteristic([powers(coefficients, exponents)], [zero], np.zeros((1, 1)))
+
+
+def ordinary(matrix):
+    n = len(matrix)
+    return Characteristic([powers([1.0], [1.0])] * n, [powers([1.0], [0.0])] * n, matrix)
+
+
+def commensurate(coefficients, q):
+    """Roots on the principal sheet of a polynomial in s**(1/q), lowest power first."""
+    z = np.roots(np.array(coefficients, dtype=float)[::-1])
+    return z[np.abs(np.angle(z)) < math.pi / q] ** q
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_commensurate_orders_against_a_polynomial(seed):
+    rng = np.random.default_rng(seed)
+    q = int(rng.integers(2, 5))
+    coefficients = rng.normal(size=int(rng.integers(3, 3 * q + 1)))
+    found = roots_right(scalar(coefficients, np.arange(len(coefficients)) / q), -1e6)
+    expected = commensurate(coefficients, q)
+    assert len(found.roots) == len(expected)
+    for root in found.roots:
+        assert np.abs(expected - root).min() < 1e-11 * abs(root)
+
+
+@pytest.mark.parametrize("n", [3, 8, 20])
+def test_an_ordinary_system_has_its_eigenvalues(n):
+    rng = np.random.default_rng(n)
+    scale = 10 ** rng.uniform(-3, 3, n)
+    matrix = rng.normal(size=(n, n)) * scale[:, None] / scale
+    found = roots_right(ordinary(matrix), -1e9)
+    eigenvalues = np.linalg.eigvals(matrix)
+    assert len(found.roots) == n
+    for root in found.roots:
+        assert np.abs(eigenvalues - root).min() < 1e-12 * abs(root)
+    assert found.unstable == (eigenvalues.real > 0.0).sum()
+
+
+def test_entries_of_very_different_sizes():
+    rng = np.random.default_rng(0)
+    matrix = rng.normal(size=(6, 6)) * 10 ** rng.uniform(-3, 6, (6, 6))
+    found = roots_right(ordinary(matrix), -1e9)
+    eigenvalues = np.linalg.eigvals(matrix)
+    assert len(found.roots) == 6
+    for root in found.roots:
+        assert np.abs(eigenvalues - root).min() < 1e-9 * abs(root)
+
+
+def test_only_roots_right_of_the_line_rightmost_first():
+    matrix = np.diag([-3.0, 2.0, -0.5, 0.5])
+    assert roots_right(ordinary(matrix), -1.0).roots == pytest.approx([2.0, 0.5, -0.5])
+    assert roots_right(ordinary(matrix), 1.0).roots == pytest.approx([2.0])
+    assert len(roots_right(ordinary(matrix), 3.0).roots) == 0
+    assert len(roots_right(ordinary(matrix), 1e3).roots) == 0
+
+
+def test_multiple_roots_of_both_kinds():
+    defective = roots_right(ordinary(np.array([[-1.0, 1.0], [0.0, -1.0]])), -2.0)
+    assert defective.roots == pytest.approx([-1.0], abs=1e-12)
+    assert defective.multiplicities.tolist() == [2]
+    semisimple = roots_right(ordinary(-np.eye(3)), -2.0)
+    assert semisimple.roots == pytest.approx([-1.0], abs=1e-12)
+    assert semisimple.multiplicities.tolist() == [3]
+
+
+def test_double_complex_root_of_a_fractional_equation():
+    row = powers([1.0, 0.5, 1.0], [2.0, 0.5, 0.0])
+    coupled = np.array([[0.0, 0.0], [1.0, 0.0]])
+    found = roots_right(Characteristic([row, row], [powers([1.0], [0.0])] * 2, coupled))
+    assert found.multiplicities.tolist() == [2, 2]
+    assert abs(found.roots[0] - (-0.1754419826631 + 1.1777194119858j)) < 1e-11
+
+
+def test_two_close_roots_are_two():
+    found = roots_right(ordinary(np.diag([-1.0, -1.0 - 1e-5])), -2.0)
+    assert found.roots == pytest.approx([-1.0, -1.0 - 1e-5], abs=1e-10)
+    assert found.multiplicities.tolist() == [1, 1]
+
+
+def test_a_root_on_the_branch_cut_is_told_apart():
+    zero = powers([0.0], [0.0])
+    rows = [powers([1.0], [1.0]), powers([1.0, 0.5, 1.0], [2.0, 0.5, 0.0])]
+    found = roots_right(Characteristic(rows, [powers([1.0], [0.0]), zero], np.diag([-0.3, 0.0])))
+    assert found.on_cut == pytest.approx([-0.3])
+    assert len(found.roots) == found.count_checked == 2
+
+
+def test_roots_on_the_axis_and_at_zero_are_reported():
+    pairs = np.zeros((4, 4))
+    pairs[:2, :2], pairs[2:, 2:] = [[0.0, 1.0], [-1.0, 0.0]], [[0.0, 1.0], [-9.0, 0.0]]
+    found = roots_right(ordinary(pairs))
+    assert sorted(found.on_axis) == pytest.approx([1.0, 3.0])
+    assert found.unstable == 0
+    found = roots_right(ordinary(np.array([[0.0, 1.0], [0.0, -1.0]])), -2.0)
+    assert found.at_zero
+    assert found.zero_order == pytest.approx(1.0, abs=0.02)
+    assert found.roots == pytest.approx([-1.0])
+    found = roots_right(scalar([1.0, 0.5], [2.0, 0.5]), -2.0)
+    assert found.zero_order == pytest.approx(0.5, abs=0.02)
+    assert found.unstable == 0
+
+
+def test_roots_near_the_axis_are_on_their_side():
+    for shift in (1e-7, -1e-7):
+        found = roots_right(ordinary(np.array([[shift, 1.0], [-1.0, shift]])))
+        assert found.unstable == (2 if shift > 0.0 else 0)
+        assert found.on_axis == ()
+
+
+def test_all_roots_lie_in_the_annulus():
+    rng = np.random.default_rng(5)
+    for _ in range(30):
+        n = int(rng.integers(2, 6))
+        matrix = rng.normal(size=(n, n)) * 10 ** rng.uniform(-3, 3, (n, n))
+        ring = annulus(ordinary(matrix))
+        sizes = np.log(np.abs(np.linalg.eigvals(matrix)))
+        assert ring.inner < sizes.min()
+        assert sizes.max() < ring.outer
+        assert ring.degree == n
+
+
+def test_nearly_equal_leading_orders_can_be_bounded():
+    found = roots_right(scalar([1.0, 10.0, 0.004], [0.0, 2.51, 2.5175]))
+    assert found.count_checked == len(found.roots)
+    with pytest.raises(ConvergenceError, match="scale the model"):
+        roots_right(scalar([1.0, 10.0, -0.004], [0.0, 2.51, 2.5175]))
+
+
+def test_a_derivative_in_a_loop_is_refused():
+    rows = [powers([1.0], [1.0]), powers([1.0], [0.0])]
+    weights = [powers([1.0], [0.0]), powers([1.0], [1.5])]
+    ch = Characteristic(rows, weights, np.array([[0.0, 1.0], [1.0, 0.0]]))
+    with pytest.raises(ConvergenceError, match="closes a loop"):
+        roots_right(ch)
+
+
+def test_beyn_finds_more_roots_than_rows():
+    ch = scalar([1.0, 0.5, 1.0, 0.3], [2.0, 0.5, 0.0, 1.7])
+    number, _ = count_rectangle(ch, complex(-3.0, -4.0), complex(3.0, 4.0))
+    assert number > 1
+    estimates = roots_in_disc(ch, 0.0, 5.0, number + 2, nodes=256)
+    zeros, errors = polish(ch, estimates)
+    inside = (np.abs(zeros.real) < 3.0) & (np.abs(zeros.imag) < 4.0) & (errors < 1e-10)
+    assert len(np.unique(zeros[inside].round(8))) == number
+
+
+def test_a_rectangle_through_a_root_is_refused():
+    with pytest.raises(OnContourError) as caught:
+        count_rectangle(ordinary(np.array([[2.0]])), complex(-1.0, 0.0), complex(3.0, 1.0))
+    assert np.exp(caught.value.places) == pytest.approx([2.0])
+
+
+def test_derivative_of_the_determinant():
+    system = load_model("racs", parameters={"u": 12.0})
+    p = system.values
+    x = system.exact_point(system.equilibrium(), p)
+    ch = Characteristic.of_model(system.exact, x, p)
+    t = np.log(np.array([3.0 + 4.0j, -1.0 + 9.0j, 0.01 + 0.001j]))
+    step = 1e-5
+    after, before = ch.log_det(t + step)[0], ch.log_det(t - step)[0]
+    assert ch.log_det(t)[1] == pytest.approx((after - before) / (2.0 * step), rel=1e-7)
+    direct = [np.linalg.det(system.exact.delta(s, x, p)) for s in np.exp(t)]
+    assert np.exp(ch.log_det(t)[0]) == pytest.approx(direct, rel=1e-12)
+
+
+def test_at_the_hopf_point_the_pair_is_on_the_axis():
+    found = characteristic_roots(load_model("racs", parameters={"u": 10.2}))
+    assert found.on_axis == pytest.approx([9.5200832], rel=1e-8)
+    assert found.unstable == 0
+
+
+@pytest.mark.parametrize(
+    ("left", "core"),
+    [
+        (powers([1.0], [-0.5]), [[1.0]]),
+        (powers([0.0], [1.0]), [[1.0]]),
+        (powers([1.0], [1.0]), [[math.nan]]),
+        (powers([1.0], [1.0]), [[1.0, 0.0], [0.0, 1.0]]),
+    ],
+)
+def test_matrices_that_cannot_be_used(left, core):
+    with pytest.raises(ParameterError):
+        Characteristic([left], [powers([1.0], [0.0])], core)
+
+
+def test_a_line_that_is_not_finite_is_refused():
+    with pytest.raises(ConvergenceError, match="not finite"):
+        roots_right(ordinary(np.eye(2)), math.nan)
