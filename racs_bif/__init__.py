@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from racs_bif.verbs.all_equilibria import all_equilibria
     from racs_bif.verbs.equilibria import continue_equilibria
     from racs_bif.verbs.orbits import continue_orbits
+    from racs_bif.verbs.spectrum import spectrum
     from racs_bif.results.branch import Branch
     from racs_bif.results.diagram import Diagram
     from racs_bif.results.files import load, save
@@ -51,6 +52,7 @@ _HOMES: Final = {
     "load_model": "racs_bif.shelf.load",
     "model_from_strings": "racs_bif.symbolic.strings",
     "save": "racs_bif.results.files",
+    "spectrum": "racs_bif.verbs.spectrum",
 }
 
 __all__ = [
@@ -69,6 +71,7 @@ __all__ = [
     "load_model",
     "model_from_strings",
     "save",
+    "spectrum",
 ]
 
 

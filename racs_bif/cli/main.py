@@ -11,7 +11,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Final
 
-from racs_bif.cli import calibrate, continue_, models
+from racs_bif.cli import calibrate, continue_, models, realisations, spectrum
 from racs_bif.cli.parser import Parser
 from racs_bif.errors import ConvergenceError, RacsBifError, UsageError, nearest
 
@@ -26,6 +26,8 @@ VERBS: Final[dict[str, ModuleType]] = {
     "continue": continue_,
     "calibrate": calibrate,
     "models": models,
+    "spectrum": spectrum,
+    "realisations": realisations,
 }
 """Each verb's module has HELP, `configure(parser)` and `run(arguments) -> int`."""
 _THREADS: Final = (

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from racs_bif.fractional.system import System
 
 DEFAULT_MODEL: Final = "racs"
-_REALISATIONS: Final = "diffusive or oustaloup"
+_REALISATIONS: Final = "diffusive (default), fitted, oustaloup, ...; see 'racs-bif realisations'"
 
 
 def add_model_options(parser: Parser, *, positional: bool = False) -> None:

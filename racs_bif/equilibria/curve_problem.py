@@ -55,6 +55,8 @@ class CurveProblem(Problem):
         "hopf", "fold" or "bp".
     critical : int
         How many eigenvalues are on the imaginary axis all along; they lead the spectrum.
+    typical : float
+        Largest value so far of the coefficient that vanishes at a cusp or a generalised Hopf point.
     """
 
     kind: str
@@ -73,6 +75,7 @@ class CurveProblem(Problem):
         self.parameter = path.names[1]
         self._span = span
         self._measures = measures
+        self.typical = 0.0
         self._vector: tuple[bytes, Array] = (b"", np.empty(0))
 
     def base(self, z: Array) -> tuple[Array, Array]:

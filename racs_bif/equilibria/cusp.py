@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from racs_bif.continuation.problem import Detector
 from racs_bif.equilibria.critical import null_vectors
 from racs_bif.equilibria.manifold import Mode, normal_form
@@ -25,14 +23,8 @@ class Cusp(Detector):
 
     def value(self, problem: FoldCurve, point: Point) -> float:
         """Return w . B(v, v), zero where it is lost in rounding."""
-        value, size = self._value(problem, point)
+        value, size = problem.quadratic(point.z)
         return 0.0 if abs(value) <= _NOISE * size else value
-
-    def _value(self, problem: FoldCurve, point: Point) -> tuple[float, float]:
-        x, p = problem.base(point.z)
-        v, w = problem.null_vectors(point.z)
-        terms = w * problem.field.f_xx(x, p, v, v)
-        return float(terms.sum()), float(np.abs(terms).sum())
 
     def data(self, problem: FoldCurve, point: Point) -> dict[str, Any] | None:
         """Return the cubic coefficient c; None where B(v, v) does not vanish but jump.
@@ -40,8 +32,8 @@ class Cusp(Detector):
         On the centre manifold ``w' = c w**3``: c = <p, C(q,q,q) + 3 B(q, h2)> / 6 with |q| = 1
         (Kuznetsov, section 8.2).
         """
-        value, size = self._value(problem, point)
-        if len(point.z) > 3 and abs(value) > _ZERO * size:
+        value, size = problem.quadratic(point.z)
+        if abs(value) > _ZERO * max(size, problem.typical):
             return None
         field, x, p = problem.realised(point.z)
         A = field.f_x(x, p)

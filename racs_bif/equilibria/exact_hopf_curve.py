@@ -136,6 +136,8 @@ class ExactHopfCurve(CurveProblem):
         del tangent
         solved = self._solve(z)
         self._borders.follow(z, _unit(solved.w), _unit(solved.v))
+        if self.frequency(z) > 0.0:
+            self.typical = max(self.typical, abs(self.cubic(z).c1.real))
         self._solved = None
 
     def frequency(self, z: Array) -> float:

@@ -99,11 +99,19 @@ class FoldCurve(CurveProblem):
         del tangent
         solved = self._solve(z)
         self._borders.follow(z, solved.w[:, None], solved.v[:, None])
+        self.typical = max(self.typical, abs(self.quadratic(z)[0]))
 
     def null_vectors(self, z: Array) -> tuple[Array, Array]:
         """Return the unit null vectors (n,) of f_x, right and left, that turn continuously."""
         solved = self._solve(z)
         return solved.v / np.linalg.norm(solved.v), solved.w / np.linalg.norm(solved.w)
+
+    def quadratic(self, z: Array) -> tuple[float, float]:
+        """Return w . B(v, v) of the unit null vectors, and the sum of the terms' magnitudes."""
+        x, p = self.base(z)
+        v, w = self.null_vectors(z)
+        terms = w * self.field.f_xx(x, p, v, v)
+        return float(terms.sum()), float(np.abs(terms).sum())
 
     def alignment(self, z: Array) -> float:
         """Return w . v of the unit null vectors, zero where zero is a double eigenvalue."""

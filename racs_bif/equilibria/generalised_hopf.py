@@ -34,7 +34,8 @@ class GeneralisedHopf(Detector):
         c2 = G32 / 12 in Kuznetsov's terms (section 8.7), |q| = 1.
         """
         cubic = problem.cubic(point.z)
-        if abs(cubic.c1.real) > _ZERO * cubic.size:
+        # Beside what it was before, for all its terms may vanish together; at a pole it is large.
+        if abs(cubic.c1.real) > _ZERO * problem.typical:
             return None
         omega = problem.frequency(point.z)
         form = quintic(problem, point.z, omega)

@@ -138,6 +138,8 @@ class HopfCurve(CurveProblem):
         solved = self._solve(z)
         self._borders.follow(z, solved.W, solved.V)
         # The components are chosen anew with the borders.
+        if self.frequency(z) > 0.0:
+            self.typical = max(self.typical, abs(self.cubic(z).c1.real))
         self._solved = None
 
     def scales(self, z: Array) -> Array:

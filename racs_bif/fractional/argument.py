@@ -9,7 +9,6 @@ the logarithmic derivative grows like one over the distance.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,8 @@ from racs_bif.fractional.polish import polish
 from racs_bif.fractional.radii import Annulus, annulus
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from racs_bif.fractional.exact import ExactModel
     from racs_bif.fractional.laws import Complex
     from racs_bif.symbolic.field import Array

@@ -7,7 +7,6 @@ so that contours may cross it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,8 @@ from racs_bif.fractional.laws import Complex, PowerSum
 from racs_bif.fractional.power_sums import merged
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from racs_bif.fractional.exact import ExactModel
     from racs_bif.symbolic.field import Array
 

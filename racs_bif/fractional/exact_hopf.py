@@ -98,14 +98,14 @@ def solve_hopf(
 
 
 def _magnitudes(z: Array, m: int) -> Array:
-    """Return what corrections are compared with: equilibrium and null vector each as a whole.
+    """Return what corrections are compared with.
 
-    The parameter's unit is anybody's, so it does not enter into the others' magnitudes; it may be
-    zero at the Hopf point and then is compared with omega.
+    States and parameter may vanish at the Hopf point and then are compared with the others and with
+    omega. The parameter may have any unit, so it is no measure for the rest.
     """
     size = np.abs(z)
-    size[:m] = np.maximum(size[:m], max(1e-3 * size[:m].max(), 1e-12))
-    size[m] = max(size[m], 1e-3 * size[m + 1])
+    floor = 1e-3 * max(size[:m].max(), size[m + 1])
+    size[: m + 1] = np.maximum(size[: m + 1], floor)
     size[m + 2 :] = size[m + 2 :].max()
     return size
 

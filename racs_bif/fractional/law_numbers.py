@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,8 @@ from racs_bif.fractional.laws import Law, read_numbers
 from racs_bif.symbolic.laws import read_law
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import sympy as sp
 
 

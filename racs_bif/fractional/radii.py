@@ -9,7 +9,6 @@ radii of spectra are monotone in |s|, so that one value of |s| decides for all b
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,6 +18,8 @@ from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.laws import Complex, PowerSum
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from racs_bif.fractional.characteristic import Characteristic

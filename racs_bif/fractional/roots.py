@@ -44,8 +44,8 @@ class Roots:
     on_axis : tuple of float
         Frequencies [rad/s] of roots on the imaginary axis, within 1e-9 of their modulus.
     zero_order : float
-        Power of s with which det Delta vanishes at s = 0, to about 1e-2; 0 where s = 0 is no root. It
-        is not among `roots`.
+        Power of s with which det Delta vanishes at s = 0, to about 1e-2; 0 where s = 0 is no root.
+        It is not among `roots`.
     on_cut : array
         Negative real numbers where det Delta vanishes on both lips of the branch cut, right of the
         line. They are not on the principal sheet, and not among `roots`.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,6 +15,8 @@ from racs_bif.fractional.realised import RealisedField
 from racs_bif.symbolic.compiled_path import CompiledPath, assign, check_values
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from racs_bif.symbolic.compiled import CompiledModel, DerivedInfo
     from racs_bif.symbolic.field import Array
     from racs_bif.symbolic.model import Parameter

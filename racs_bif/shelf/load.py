@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import functools
 import hashlib
-from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +21,8 @@ from racs_bif.symbolic.compiled import CompiledModel, compile_model, read_source
 from racs_bif.symbolic.model import Calibration, Model, Parameter
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from racs_bif.fractional.filter import Realisation
     from racs_bif.symbolic.field import Array
 

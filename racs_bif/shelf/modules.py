@@ -11,15 +11,17 @@ from __future__ import annotations
 import importlib
 import sys
 import traceback
-from collections.abc import Sequence
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import spec_from_file_location
 from pathlib import Path
-from types import ModuleType
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from racs_bif.errors import ModelError
 from racs_bif.shelf.folders import KINDS, folders
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import ModuleType
 
 _SHELF = __name__.rpartition(".")[0]
 

@@ -8,11 +8,13 @@ runs on floats (with `math`) and on arrays (with numpy).
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from racs_bif.symbolic.graph import COMPARISONS, Graph
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
 _INFIX: Final = {"add": "+", "sub": "-", "mul": "*", "div": "/"} | COMPARISONS
 _DEPTH = 12

@@ -9,7 +9,6 @@ The states of a fractional element's realisation do not appear here. The compile
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +22,8 @@ from racs_bif.symbolic.mass import solve_mass
 from racs_bif.symbolic.metadata import describe
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import sympy as sp
 
     from racs_bif.symbolic.model import Model

@@ -8,8 +8,10 @@ derivatives and unit factors disappear as the graph is built.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
 
 UNARY: Final[dict[str, Callable[[float], float]]] = {
     "exp": math.exp,

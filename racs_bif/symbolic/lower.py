@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from racs_bif.errors import ModelError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     import sympy as sp
 
     from racs_bif.symbolic.graph import Graph

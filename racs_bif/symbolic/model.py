@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import keyword
 import math
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from numbers import Real
 from typing import TYPE_CHECKING
@@ -15,6 +14,8 @@ from typing import TYPE_CHECKING
 from racs_bif.errors import ModelError, ParameterError, nearest
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     import sympy as sp
 
 LAPLACE = "s"

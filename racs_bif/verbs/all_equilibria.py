@@ -1,23 +1,18 @@
-"""Every branch of equilibria that can be found: crossing branches, and those that nothing leads to."""
+"""Every branch of equilibria that can be found, also those that nothing leads to."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.continuation.points import Point, Trace
 from racs_bif.continuation.settings import StepSettings
-from racs_bif.continuation.trace import trace
 from racs_bif.equilibria.deflation import other_equilibria, same_state
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.system import System
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.diagram import Diagram
 from racs_bif.shelf.load import system_of
-from racs_bif.symbolic.field import Array
-from racs_bif.symbolic.model import Model
 from racs_bif.verbs.equilibria import (
     as_branch,
     check_span,
@@ -25,6 +20,14 @@ from racs_bif.verbs.equilibria import (
     follow,
     starting_point,
 )
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from racs_bif.continuation.points import Point, Trace
+    from racs_bif.fractional.system import System
+    from racs_bif.symbolic.field import Array
+    from racs_bif.symbolic.model import Model
 
 _PROBES = 6
 _SPREADS = (1.0, 10.0, 100.0)
@@ -106,7 +109,7 @@ class _Search:
                 if np.max(np.abs(X) / scale) > _STRAY:
                     continue
                 ny = len(self.system.states)
-                x = self.system.field.rest(X[:ny], X[ny:], p)
+                x: Array = self.system.field.rest(X[:ny], X[ny:], p)
                 if not any(same_state(X, Y, scale) for Y in self.states_at(value)):
                     self.follow(np.append(x, value))
 
@@ -118,7 +121,7 @@ def _scale(states: Sequence[Array]) -> Array:
 
 
 @single_threaded
-def all_equilibria(  # noqa: PLR0913 - each is one choice of the user's
+def all_equilibria(
     model: Model | System,
     parameter: str,
     span: tuple[float, float],

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from racs_bif.continuation.points import Point, Trace
 from racs_bif.continuation.stopped import Stopped
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from racs_bif.continuation.points import Point, Trace
 
 
 def columns(points: Sequence[Point]) -> dict[str, Any]:
@@ -42,7 +46,7 @@ def stopped(trace: Trace) -> tuple[str, bool]:
         ends.insert(0, trace.stopped_backward)
     sentences = [end.value for end in ends]
     if len(ends) > 1:
-        sentences = [f"{where}: {text}" for where, text in zip(("First", "Last"), sentences, strict=True)]
+        sentences = [f"At its beginning: {sentences[0]}", f"At its end: {sentences[1]}"]
     if trace.message:
         sentences.append(trace.message)
     return " ".join(sentences), any(not end.complete for end in ends)

@@ -47,11 +47,12 @@ _KINDS: Final = {
 _NAMES: Final = {"hopf": "HC", "fold": "LC", "bp": "BC"}
 _SETTINGS: Final = StepSettings(maximum=1 / 40, angle=0.2)
 """Steps in a plane turn less than along a branch, so that pictures of curves are smooth."""
+_REACH: Final = 1e-3
 _OPERATORS: Final = ("realised", "exact")
 
 
 @single_threaded
-def continue_curve(  # noqa: PLR0913 - each is one choice of the user's
+def continue_curve(
     point: SpecialPoint,
     parameters: tuple[str, str],
     spans: tuple[Span | None, Span | None] | Mapping[str, Span] | None = None,
@@ -101,7 +102,7 @@ def continue_curve(  # noqa: PLR0913 - each is one choice of the user's
     ConvergenceError
         If no solution is found at the start.
     """
-    origin, chosen = _origin(point), _kind(point, kind)
+    origin, chosen = origin_of(point), _kind(point, kind)
     if operator not in _OPERATORS:
         msg = f"unknown operator '{operator}'; there are: {', '.join(_OPERATORS)}"
         raise UsageError(msg)
@@ -114,7 +115,7 @@ def continue_curve(  # noqa: PLR0913 - each is one choice of the user's
     return _branch(system, problem, found, second)
 
 
-def _origin(point: SpecialPoint) -> Origin:
+def origin_of(point: SpecialPoint) -> Origin:
     if not isinstance(point.origin, Origin):
         msg = (
             f"{point.name} was loaded from a file; compute its branch again to start a curve there"
@@ -137,7 +138,7 @@ def _kind(point: SpecialPoint, wanted: str | None) -> str:
         msg = f"no curve of equilibria starts at {point.name} ({point.title}); these can: {labels}"
         raise UsageError(msg)
     if wanted is None:
-        own = getattr(_origin(point).problem, "kind", None)
+        own = getattr(origin_of(point).problem, "kind", None)
         others = [kind for kind in possible if kind != own]
         return (others or possible)[0]
     plain = wanted.removesuffix("2")
@@ -232,6 +233,18 @@ class _Start:
             return ExactFoldCurve(static, field, *common, _outputs(system)), np.append(X, values)
         z = np.concatenate([X, [0.0], values])
         return BranchPointCurve(static, field, *common, _outputs(system)), z
+
+
+def start_of(point: SpecialPoint, kind: str) -> tuple[CurveProblem, Array]:
+    """Return the problem of a curve through a point of another, and the point on it."""
+    origin = origin_of(point)
+    system = replace(origin.system, values=origin.parameters)
+    names = origin.problem.path.names  # type: ignore[attr-defined] # as all of ours have
+    value = system.parameters[names[0]]
+    reach = max(abs(value), _REACH)
+    span = value - reach, value + reach
+    start = _Start(system, origin.equilibrium, names, span, _frequency(point, None))
+    return start.problem(kind, "realised")
 
 
 def _detectors(kind: str, operator: str) -> list[Detector]:

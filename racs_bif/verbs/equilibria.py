@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from racs_bif.continuation.points import Point, Trace
-from racs_bif.continuation.points import SpecialPoint as RawPoint
 from racs_bif.continuation.settings import StepSettings
 from racs_bif.continuation.trace import trace
 from racs_bif.equilibria.branch_point import BranchPoint
@@ -17,20 +14,26 @@ from racs_bif.equilibria.hopf import Hopf
 from racs_bif.equilibria.problem import EquilibriumProblem
 from racs_bif.errors import ConvergenceError, ParameterError, UsageError
 from racs_bif.fractional.exact_hopf import solve_hopf
-from racs_bif.fractional.system import System
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.branch import Branch
 from racs_bif.results.provenance import describe
 from racs_bif.results.special import ExactPoint, SpecialPoint
 from racs_bif.shelf.load import system_of
-from racs_bif.symbolic.field import Array
 from racs_bif.symbolic.model import Model, find_parameter
 from racs_bif.verbs import assemble
 from racs_bif.verbs.origin import Origin
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from racs_bif.continuation.points import Point, Trace
+    from racs_bif.continuation.points import SpecialPoint as RawPoint
+    from racs_bif.fractional.system import System
+    from racs_bif.symbolic.field import Array
+
 
 @single_threaded
-def continue_equilibria(  # noqa: PLR0913 - each is one choice of the user's
+def continue_equilibria(
     model: Model | System,
     parameter: str,
     span: tuple[float, float],
@@ -41,8 +44,8 @@ def continue_equilibria(  # noqa: PLR0913 - each is one choice of the user's
 ) -> Branch:
     """Follow the equilibrium near the model's guess as one parameter moves through a span.
 
-    Folds (LP), Hopf points (H) and branch points (BP) are located. Hopf points of a fractional model
-    are solved again on its exact characteristic function, and the shift is reported.
+    Folds (LP), Hopf points (H) and branch points (BP) are located. Hopf points of a fractional
+    model are solved again on its exact characteristic function, and the shift is reported.
 
     Parameters
     ----------
@@ -95,7 +98,7 @@ def equilibrium_problem(system: System, parameter: str) -> EquilibriumProblem:
     return EquilibriumProblem(system.field, system.path(parameter), outputs_of(system))
 
 
-def follow(  # noqa: PLR0913 - what a branch is made of
+def follow(
     problem: EquilibriumProblem,
     z: Array,
     span: tuple[float, float],
@@ -167,7 +170,7 @@ def outputs_of(system: System) -> Callable[[Array, Array], dict[str, float]]:
 
 
 def starting_point(system: System, parameter: str, span: tuple[float, float]) -> Array:
-    """Return an equilibrium within the span: at the parameter's own value, an end or the middle."""
+    """Return an equilibrium: at the parameter's own value, or an end or the middle of the span."""
     low, high = span
     own = system.parameters[parameter]
     places = [own] if low <= own <= high else []
@@ -185,7 +188,7 @@ def starting_point(system: System, parameter: str, span: tuple[float, float]) ->
 def as_branch(
     system: System, problem: EquilibriumProblem, found: Trace, span: tuple[float, float]
 ) -> Branch:
-    """Return a traced branch of equilibria as a result, its Hopf points checked on the exact model."""
+    """Return a traced branch as a result, its Hopf points checked on the exact model."""
     sentence, early = assemble.stopped(found)
     named = [(raw, _special(system, problem, raw, span)) for raw in found.special]
     states = np.array([p.z[:-1] for p in found.points])

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,16 +11,12 @@ from racs_bif.continuation.points import SpecialPoint as RawPoint
 from racs_bif.continuation.settings import StepSettings
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.trace import trace
-from racs_bif.equilibria.hopf_form import HopfForm
 from racs_bif.errors import UsageError, nearest
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.orbits.branch_point import BranchPointOfCycles
 from racs_bif.orbits.cycles_fold import FoldOfCycles
 from racs_bif.orbits.neimark_sacker import NeimarkSacker
-from racs_bif.orbits.orbit import Orbit
 from racs_bif.orbits.period_doubling import PeriodDoubling
-from racs_bif.orbits.problem import OrbitProblem
-from racs_bif.orbits.settings import OrbitSettings
 from racs_bif.orbits.start import from_hopf
 from racs_bif.results.branch import Branch, Profile
 from racs_bif.results.provenance import describe
@@ -30,13 +25,21 @@ from racs_bif.verbs import assemble
 from racs_bif.verbs.equilibria import check_span
 from racs_bif.verbs.origin import Origin
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from racs_bif.equilibria.hopf_form import HopfForm
+    from racs_bif.orbits.orbit import Orbit
+    from racs_bif.orbits.problem import OrbitProblem
+    from racs_bif.orbits.settings import OrbitSettings
+
 METHODS = ("shooting",)
 """Discretisations of periodic orbits."""
 _STEPS = StepSettings(maximum=0.05, tolerance=1e-8)
 
 
 @single_threaded
-def continue_orbits(  # noqa: PLR0913 - each is one choice of the user's
+def continue_orbits(
     hopf: SpecialPoint,
     span: tuple[float, float] | None = None,
     *,

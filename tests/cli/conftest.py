@@ -7,6 +7,7 @@ import pytest
 
 from racs_bif.cli import continue_
 from racs_bif.cli.main import main
+from racs_bif.results.diagram import Diagram
 
 _KNOWN = runpy.run_path(str(Path(__file__).parents[1] / "results" / "conftest.py"))
 
@@ -74,7 +75,10 @@ def computed(monkeypatch, known):
         orbits=lambda *_a, **_k: known.orbits(),
     )
     monkeypatch.setattr(continue_, "open_system", lambda _: system)
-    for module, name in (("equilibria", "continue_equilibria"), ("orbits", "continue_orbits")):
-        fake = SimpleNamespace(**{name: lambda *a, _m=module, **k: getattr(calls, _m)(*a, **k)})
-        monkeypatch.setitem(sys.modules, f"racs_bif.verbs.{module}", fake)
+    equilibria = SimpleNamespace(
+        all_equilibria=lambda *a, **k: Diagram(calls.equilibria(*a, **k)),
+    )
+    orbits = SimpleNamespace(continue_orbits=lambda *a, **k: calls.orbits(*a, **k))
+    monkeypatch.setitem(sys.modules, "racs_bif.verbs.all_equilibria", equilibria)
+    monkeypatch.setitem(sys.modules, "racs_bif.verbs.orbits", orbits)
     return calls

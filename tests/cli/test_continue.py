@@ -130,8 +130,8 @@ def test_a_second_hopf_point_gives_a_second_branch_of_orbits(cli, complete, know
 def test_arguments_reach_the_computation(cli, computed, known, out):
     seen = {}
 
-    def equilibria(system, parameter, span, *, at, progress):
-        seen["equilibria"] = (parameter, span, at, progress)
+    def equilibria(system, parameter, span, *, at, probes, progress):
+        seen["equilibria"] = (parameter, span, at, probes, progress)
         return known.equilibria()
 
     def orbits(point, span, *, method, at, progress):
@@ -139,8 +139,8 @@ def test_arguments_reach_the_computation(cli, computed, known, out):
         return known.orbits()
 
     computed.equilibria, computed.orbits = equilibria, orbits
-    cli(*RUN, "--at", "12", "18", "--at", "20", "--out", out)
-    assert seen["equilibria"] == ("u", (5.0, 30.0), (12.0, 18.0, 20.0), None)
+    cli(*RUN, "--at", "12", "18", "--at", "20", "--probes", "3", "--out", out)
+    assert seen["equilibria"] == ("u", (5.0, 30.0), (12.0, 18.0, 20.0), 3, None)
     assert seen["orbits"] == ("H1", (5.0, 30.0), "shooting", (12.0, 18.0, 20.0), None)
 
 

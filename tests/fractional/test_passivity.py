@@ -99,20 +99,23 @@ def test_every_zero_of_a_sum_of_powers_is_found():
 def test_relaxation_and_creep_against_an_inverse_laplace_transform(name):
     law = law_in_numbers(NAMED[name])
 
-    def Z(s):
+    def transfer(s):
         above = zip(law.numerator.coefficients, law.numerator.exponents, strict=True)
         below = zip(law.denominator.coefficients, law.denominator.exponents, strict=True)
         return sum(c * s**e for c, e in above) / sum(c * s**e for c, e in below)
 
     times = np.array([0.05, 1.3, 40.0])
-    stress = [float(mpmath.invertlaplace(lambda s: Z(s) / s, t, method="talbot")) for t in times]
+    stress = [
+        float(mpmath.invertlaplace(lambda s: transfer(s) / s, t, method="talbot")) for t in times
+    ]
     assert relaxation(law, times) == pytest.approx(stress, rel=1e-11)
     if name == "2b":
         with pytest.raises(UsageError, match="no closed form"):
             creep(law, times)
         return
     strain = [
-        float(mpmath.invertlaplace(lambda s: 1 / (s * Z(s)), t, method="talbot")) for t in times
+        float(mpmath.invertlaplace(lambda s: 1 / (s * transfer(s)), t, method="talbot"))
+        for t in times
     ]
     assert creep(law, times) == pytest.approx(strain, rel=1e-11)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 import racs_bif as rb
 from racs_bif.errors import ParameterError, UsageError
 from racs_bif.results.branch import Branch
