@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from racs_bif.equilibria.problem import EquilibriumProblem
 
 
+_PITCHFORK = 1e-6
+_ALONG = 1e-4
+
+
 class BranchPoint(Detector):
     """The matrix [f_x f_lambda; tangent] is singular."""
 
@@ -36,21 +40,32 @@ class BranchPoint(Detector):
     def data(self, problem: EquilibriumProblem, point: Point) -> dict[str, Any]:
         """Return the kind of crossing and the direction (n+1,) of the other branch.
 
-        With v spanning the kernel of f_x and psi that of its transpose, the other branch leaves along
-        ``alpha t + beta (v, 0)`` with ``2 alpha <psi, f_zz(t, v)> + beta <psi, B(v, v)> = 0``: a pitchfork
-        where ``<psi, B(v, v)> = 0``, otherwise a transcritical point.
+        The kernel of (f_x, f_lambda) is spanned by (v, 0) and (w, 1), v being the null vector of f_x; psi
+        is that of its transpose. Branches leave along ``alpha (w, 1) + beta (v, 0)`` with
+        ``c22 alpha^2 + 2 c12 alpha beta + c11 beta^2 = 0``, c11 = <psi, B(v, v)> and so on. One of the two is
+        known: it gives the other without c22, save on the branch of a pitchfork itself, along
+        (v, 0). There w is taken orthogonal to v, which is the other branch where a reflection
+        is the reason for the pitchfork, and a start from which it is found elsewhere.
         """
         z, field = point.z, problem.field
         x, p, dp = z[:-1], problem.path.vector(z[-1]), problem.path.direction(z[-1])
-        left, _, right = np.linalg.svd(field.f_x(x, p))
+        A = field.f_x(x, p)
+        left, singular, right = np.linalg.svd(A)
         v, psi = right[-1], left[:, -1]
-        along = point.tangent / np.abs(point.tangent).max()
-        curvature = float(psi @ field.f_xx(x, p, v, v))
-        mixed = float(psi @ (field.f_xx(x, p, along[:-1], v) + along[-1] * field.f_xp(x, p, v, dp)))
-        size = float(np.abs(field.f_xx(x, p, v, v)).max()) + abs(mixed)
-        pitchfork = abs(curvature) <= 1e-6 * size
-        alpha = 0.0 if pitchfork or mixed == 0.0 else -0.5 * curvature / mixed
-        other = alpha * along + np.append(v, 0.0)
+        projected = left[:, :-1].T @ -field.f_p(x, p, dp)
+        w = right[:-1].T @ (projected / singular[:-1])
+        square = field.f_xx(x, p, v, v)
+        c11 = float(psi @ square)
+        c12 = float(psi @ (field.f_xx(x, p, w, v) + field.f_xp(x, p, v, dp)))
+        pitchfork = abs(c11) <= _PITCHFORK * (float(np.abs(psi * square).sum()) + abs(c12))
+        alpha = float(point.tangent[-1])
+        beta = float(point.tangent[:-1] @ v)
+        if abs(alpha) * np.sqrt(w @ w + 1.0) <= _ALONG * abs(beta):
+            other = np.append(w, 1.0)
+        elif pitchfork:
+            other = np.append(v, 0.0)
+        else:
+            other = c11 * np.append(w, 1.0) - (2.0 * c12 + beta / alpha * c11) * np.append(v, 0.0)
         return {
             "kind": "pitchfork" if pitchfork else "transcritical",
             "other_tangent": other / np.sqrt(other @ other),

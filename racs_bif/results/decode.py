@@ -92,6 +92,7 @@ def _decode_special(node: Node) -> SpecialPoint:
             parameters=_numbered(node, "exact_parameter"),
             omega=_real(node, "exact_omega"),
             shift=_numbered(node, "exact_shift"),
+            l1=_real(node, "exact_l1") if "exact_l1" in node.attributes else None,
         )
     return SpecialPoint(
         label=str(node.attributes["label"]),

@@ -111,6 +111,8 @@ def _encode_special(point: SpecialPoint) -> Node:
     )
     if point.exact is not None:
         node.attributes["exact_omega"] = point.exact.omega
+        if point.exact.l1 is not None:
+            node.attributes["exact_l1"] = point.exact.l1
         node.attributes |= _numbered("exact_parameter", point.exact.parameters)
         node.attributes |= _numbered("exact_shift", point.exact.shift)
     for name, value in point.data.items():

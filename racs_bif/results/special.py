@@ -33,11 +33,14 @@ class ExactPoint:
     shift : dict of str to float
         What the realisation is off by: (realised - exact) / exact, for each active parameter and
         for ``omega``.
+    l1 : float, optional
+        First Lyapunov coefficient of the exact operator, at a Hopf point.
     """
 
     parameters: Mapping[str, float]
     omega: float
     shift: Mapping[str, float]
+    l1: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

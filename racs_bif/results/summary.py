@@ -170,6 +170,7 @@ def _exact(exact: ExactPoint) -> dict[str, object]:
         "parameters": dict(exact.parameters),
         "omega": exact.omega,
         "shift": dict(exact.shift),
+        "l1": exact.l1,
     }
 
 

@@ -216,8 +216,9 @@ def _is_closed_node(node: ast.AST, package: set[str]) -> bool:
         if node.module == "racs_bif":
             return all(alias.name in _OWN_NAMES for alias in node.names)
         return not node.level and _is_closed_module(node.module or "")
-    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
-        return node.value.id not in package or node.attr in _OWN_NAMES
+    if isinstance(node, ast.Attribute):
+        ours = isinstance(node.value, ast.Name) and node.value.id in package
+        return node.attr in _OWN_NAMES if ours else node.attr not in _OPEN_NAMES
     return not (isinstance(node, ast.Name) and node.id in _OPEN_NAMES)
 
 

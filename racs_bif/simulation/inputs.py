@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,32 +13,30 @@ import numpy as np
 from racs_bif.errors import ParameterError, UsageError
 
 if TYPE_CHECKING:
+    from racs_bif.fractional.laws import Law
     from racs_bif.fractional.system import System
     from racs_bif.symbolic.field import Array
 
 Signal = Callable[[float], float] | Mapping[float, float]
-"""A smooth function of time, or the values it takes from given times on."""
+"""A function of time, or the values a parameter takes from given times on."""
 _FINEST = 10_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Inputs:
     """Base parameters as functions of time; before t = 0 they are the system's own.
-
-    A signal is a callable, smooth for t >= 0, or a mapping of times to values: from each time on
-    the parameter has that value. A signal that jumps while it moves is a callable whose jumps are
-    named.
 
     Parameters
     ----------
     system : System
         Whose parameters.
-    signals : mapping of str to callable or mapping
-        By the name of the parameter, base or derived.
-    jumps : tuple of float
-        Further times at which callables jump; there they are continuous from the right.
     duration : float
         How long they are wanted [s].
+    signals : mapping of str to callable or mapping
+        By the name of a parameter, base or derived: a callable that is smooth for t >= 0, or a
+        mapping of times to the values that the parameter takes from then on.
+    jumps : sequence of float
+        Times at which callables jump all the same; there they are continuous from the right.
 
     Raises
     ------
@@ -50,47 +47,31 @@ class Inputs:
     """
 
     system: System
-    signals: Mapping[str, Signal]
     duration: float
+    signals: Mapping[str, Signal] = field(default_factory=dict)
     jumps: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         """Check names, times and values."""
-        for time in self._all_times():
+        for time in self._all_jumps():
             if not 0.0 <= time < math.inf:
                 msg = f"an input cannot change at t = {time:g} s; give times from 0 on"
                 raise UsageError(msg)
-        base = self.system
-        for name, signal in self.signals.items():
-            known = isinstance(signal, Mapping)
-            values = list(signal.values()) if known else [_call(name, signal, 0.0)]  # type: ignore[union-attr,arg-type]
-            for value in values:
-                moved = base.with_parameters({name: float(value)})
-                self._check_laws(name, moved)
-
-    def _check_laws(self, name: str, moved: System) -> None:
         laws = self.system.exact.laws(self.system.values)
-        for law, other in zip(laws, moved.exact.laws(moved.values), strict=True):
-            pairs = (law.numerator, other.numerator), (law.denominator, other.denominator)
-            for one, two in pairs:
-                if not (
-                    np.array_equal(one.coefficients, two.coefficients)
-                    and np.array_equal(one.exponents, two.exponents)
-                ):
+        for name, signal in self.signals.items():
+            values = signal.values() if isinstance(signal, Mapping) else [signal(0.0)]
+            for value in values:
+                moved = self.system.with_parameters({name: float(value)})
+                if not all(map(_same, laws, moved.exact.laws(moved.values))):
                     msg = (
-                        f"'{name}' is in the law of '{law.name}', which cannot change with time; "
-                        "use it outside the law, or keep it constant"
+                        f"a law of the model depends on '{name}', which therefore cannot change "
+                        "with time; keep it constant"
                     )
                     raise ParameterError(msg)
 
-    def _all_times(self) -> list[float]:
+    def _all_jumps(self) -> list[float]:
         tables = [s for s in self.signals.values() if isinstance(s, Mapping)]
-        return [*self.jumps, *(float(t) for table in tables for t in table)]
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The parameters that move."""
-        return tuple(self.signals)
+        return [*map(float, self.jumps), *(float(t) for table in tables for t in table)]
 
     @property
     def constant(self) -> bool:
@@ -100,7 +81,7 @@ class Inputs:
     @property
     def jump_times(self) -> tuple[float, ...]:
         """Times of jumps within the duration, ascending, t = 0 left out."""
-        return tuple(sorted({t for t in self._all_times() if 0.0 < t < self.duration}))
+        return tuple(sorted({t for t in self._all_jumps() if 0.0 < t < self.duration}))
 
     @property
     def divisor(self) -> int:
@@ -113,16 +94,22 @@ class Inputs:
         """
         whole = 1
         for time in self.jump_times:
-            share = time / self.duration
-            fraction = Fraction(share).limit_denominator(_FINEST)
-            whole = math.lcm(whole, fraction.denominator)
-            if abs(float(fraction) - share) > 1e-12 or whole > _FINEST:
+            share = Fraction(time / self.duration).limit_denominator(_FINEST)
+            whole = math.lcm(whole, share.denominator)
+            if abs(float(share) * self.duration - time) > 1e-9 * time or whole > _FINEST:
                 msg = (
-                    f"no step fits both the duration {self.duration:g} s and the jump at "
-                    f"{time:g} s; choose a duration that is a multiple of some step up to the jump"
+                    f"no step divides both the duration {self.duration:g} s and the time "
+                    f"{time:g} s of a jump; choose round numbers"
                 )
                 raise UsageError(msg)
         return whole
+
+    def times(self, count: int) -> Array:
+        """Return count + 1 equidistant times, jumps exactly where they are."""
+        times = np.linspace(0.0, self.duration, count + 1)
+        for jump in self.jump_times:
+            times[round(jump / self.duration * count)] = jump
+        return times
 
     def values(self, t: float, *, before: bool = False) -> Array:
         """Return the base parameters (np,) at a time.
@@ -132,16 +119,29 @@ class Inputs:
         t : float
             Time, t >= 0.
         before : bool
-            Whether, at a jump, the values just before it are meant; before t = 0 the model's own.
+            Whether, at a jump, the values just before it are meant; at t = 0 the system's own.
         """
         if not self.signals or (before and t <= 0.0):
             return self.system.values
-        wanted = [_at(name, signal, t, before=before) for name, signal in self.signals.items()]
-        rest = [v if v is not None else self.system.parameters[n] for n, v in wanted_pairs(self.names, wanted)]
-        return self.system.path(*self.names).vector(rest)
+        names = tuple(self.signals)
+        wanted = [self._value(name, t, before=before) for name in names]
+        return self.system.path(*names).vector(wanted)
+
+    def column(self, name: str, times: Array) -> Array:
+        """Return a parameter that moves, at times (nt,); just before it where it jumps."""
+        return np.array([self._value(name, float(t), before=bool(t > 0.0)) for t in times])
+
+    def _value(self, name: str, t: float, *, before: bool) -> float:
+        signal = self.signals[name]
+        if not isinstance(signal, Mapping):
+            return float(signal(math.nextafter(t, -math.inf) if before and t in self.jumps else t))
+        past = [time for time in signal if time < t or (time == t and not before)]
+        return float(signal[max(past)]) if past else self.system.parameters[name]
 
 
-def wanted_pairs(
-    names: tuple[str, ...], wanted: list[float | None]
-) -> list[tuple[str, float | None]]:
-    return list(zip(names, wanted, strict=True))
+def _same(one: Law, other: Law) -> bool:
+    pairs = (one.numerator, other.numerator), (one.denominator, other.denominator)
+    return all(
+        np.array_equal(a.coefficients, b.coefficients) and np.array_equal(a.exponents, b.exponents)
+        for a, b in pairs
+    )

@@ -13,6 +13,7 @@ from racs_bif.equilibria.fold import Fold
 from racs_bif.equilibria.hopf import Hopf
 from racs_bif.equilibria.problem import EquilibriumProblem
 from racs_bif.errors import ConvergenceError, ParameterError, UsageError
+from racs_bif.fractional.exact_form import exact_form
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.branch import Branch
@@ -241,7 +242,9 @@ def _exact_hopf(system: System, problem: EquilibriumProblem, raw: RawPoint) -> E
     X = system.exact_point(raw.z[:-1], problem.path.vector(value))
     exact = solve_hopf(system.exact, problem.path, X, value, omega)
     size = abs(exact.value) or 1.0
+    form = exact_form(system.exact, problem.path, exact)
     return ExactPoint(
+        l1=form.l1,
         parameters={problem.parameter: exact.value},
         omega=exact.omega,
         shift={

@@ -50,6 +50,7 @@ def test_one_hopf_point_exactly_where_it_was_calibrated(equilibria: Branch) -> N
     assert hopf.exact.omega == pytest.approx(9.5200832, abs=1e-7)
     assert abs(hopf.exact.shift["u"]) < 1e-3
     assert hopf.l1 < 0.0
+    assert hopf.exact.l1 == pytest.approx(hopf.l1, rel=0.02)
     assert hopf.criticality == "supercritical"
 
 

@@ -1,0 +1,365 @@
+"""Periodic orbits by harmonic balance on the exact fractional operator."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from racs_bif.continuation.stopped import Stopped
+from racs_bif.errors import ConvergenceError, UsageError
+from racs_bif.orbits.balance import Balance, Balanced
+from racs_bif.orbits.balance_settings import BalanceSettings
+from racs_bif.orbits.floquet import Floquet
+from racs_bif.orbits.fourier import (
+    amplitudes,
+    evaluated,
+    extrema,
+    harmonics_of,
+    resized,
+    tails,
+    turned,
+)
+from racs_bif.orbits.problem import OrbitProblem
+from racs_bif.orbits.realised_orbit import RealisedOrbit
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Point
+    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.symbolic.field import Array
+    from racs_bif.symbolic.paths import ParameterPath
+
+STABILITY: Final = "monodromy of the realisation along the exact orbit"
+"""Where the multipliers come from."""
+
+TAIL: Final = 3
+"""Unknowns after the coefficients: period, number of the reference, parameter."""
+_SAME: Final = 1e-9
+_POLISHING: Final = 6
+_GROWTH: Final = 1.3
+_SPARE: Final = 1e-2
+"""Harmonics are given back where even two thirds of them leave a tail this far below the bound."""
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseReference:
+    """An orbit that fixes the phase of its neighbours: integral <x - r, r'> ds = 0.
+
+    Attributes
+    ----------
+    series : array (2H + 1, m)
+        The orbit.
+    velocities : array (2H + 1, m)
+        Its derivative by the angle.
+    scales : array (m,)
+        Typical amplitudes of the unknowns, positive.
+    degenerate : bool
+        Whether the orbit is an equilibrium, from which a branch starts.
+    """
+
+    series: Array
+    velocities: Array
+    scales: Array
+    degenerate: bool = False
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights (2H + 1, m), normalised: a shift by an angle gives the angle."""
+        weights = self.velocities / self.scales**2
+        return np.asarray(weights / np.sum(weights * self.velocities))
+
+    def phase(self, series: Array) -> float:
+        """Return the angle by which a series is ahead, to first order."""
+        return float(np.sum(self.weights * (series - self.series)))
+
+    def correlation(self, series: Array) -> float:
+        """Return the cosine between two orbits' departures from their means."""
+        if self.degenerate:
+            return 1.0
+        here, there = series[1:] / self.scales, self.series[1:] / self.scales
+        lengths = float(np.linalg.norm(here) * np.linalg.norm(there))
+        return float(np.sum(here * there)) / lengths if lengths else 0.0
+
+
+class HarmonicBalanceProblem(OrbitProblem):
+    """Periodic orbits of the exact model, by harmonic balance.
+
+    The unknowns are z = (c, T, g, lambda): the Fourier coefficients (2H + 1, m) of the unknowns
+    that no affine equation gives, the period, the number of the phase condition in use, and the
+    active parameter. An accepted orbit makes the phase condition of the next; a solution thus
+    knows, by its number, the equations that it solves.
+
+    Multipliers belong to the realisation: its variational equation is integrated along the exact
+    orbit. The distance of the trivial one from 1 is then what the realisation costs.
+
+    Parameters
+    ----------
+    model : ExactModel
+        The exact model; the realisation of its field serves for the multipliers.
+    path : ParameterPath
+        Where the active parameter leads.
+    balance : Balance
+        Its equations.
+    reference : PhaseReference
+        The first phase condition.
+    settings : BalanceSettings, optional
+        Harmonics, multipliers, ends.
+    """
+
+    def __init__(
+        self,
+        model: ExactModel,
+        path: ParameterPath,
+        balance: Balance,
+        reference: PhaseReference,
+        settings: BalanceSettings | None = None,
+    ) -> None:
+        self.name = "periodic orbits by harmonic balance"
+        self.parameter = path.names[0]
+        self.field = model.field
+        self.model = model
+        self.path = path
+        self.balance = balance
+        self.settings = settings or BalanceSettings()
+        self._references = [reference]
+        self._width = len(balance.kept)
+        self._solution: tuple[bytes, Balanced] | None = None
+        self._realised: tuple[bytes, RealisedOrbit] | None = None
+        self._first_period: float | None = None
+
+    # ------------------------------------------------------------------ the unknowns
+
+    def join(self, series: Array, period: float, active: float, number: int = 0) -> Array:
+        """Return z from a series (2H + 1, m), period, parameter and number of the reference."""
+        return np.concatenate((series.ravel(), (period, float(number), active)))
+
+    def series(self, z: Array) -> Array:
+        """Return the unknown series (2H + 1, m)."""
+        return z[:-TAIL].reshape(-1, self._width)
+
+    def period(self, z: Array) -> float:
+        """Return the period, in units of time."""
+        return float(z[-3])
+
+    def harmonics(self, z: Array) -> int:
+        """Return the number of harmonics."""
+        return harmonics_of(self.series(z))
+
+    def tail(self, z: Array) -> float:
+        """Return the largest of the last harmonics, relative to the orbit: its error."""
+        return float(tails(self.series(z)).max())
+
+    def reference(self, z: Array) -> PhaseReference:
+        """Return the phase condition that `z` belongs to.
+
+        Raises
+        ------
+        UsageError
+            If it belongs to none of this problem's.
+        """
+        number = round(z[-2])
+        if 0 <= number < len(self._references):
+            reference = self._references[number]
+            if reference.series.size == len(z) - TAIL:
+                return reference
+        raise UsageError(
+            f"{len(z)} unknowns with phase condition {number} are no orbit of this branch: "
+            "continue from its profile instead"
+        )
+
+    # ------------------------------------------------------------------ the equations
+
+    def solution(self, z: Array) -> Balanced:
+        """Return the balance at `z`.
+
+        Raises
+        ------
+        ConvergenceError
+            If the period is not positive or the equations are not finite on the orbit.
+        """
+        key = z.tobytes()
+        if self._solution is None or self._solution[0] != key:
+            found = self.balance.at(self.series(z).copy(), self.period(z), float(z[-1]))
+            self._solution = (key, found)
+        return self._solution[1]
+
+    def residual(self, z: Array) -> Array:
+        """Return what does not balance, the phase and the number's distance."""
+        reference = self.reference(z)
+        residual = self.solution(z).residual.ravel()
+        number = z[-2] - np.round(z[-2])
+        return np.concatenate((residual, (reference.phase(self.series(z)), number)))
+
+    def jacobian(self, z: Array) -> Array:
+        """Return the exact derivative ((2H + 1) m + 2, (2H + 1) m + 3) of the residual."""
+        solution, count = self.solution(z), len(z) - TAIL
+        jacobian = np.zeros((count + 2, count + TAIL))
+        jacobian[:count, :count] = solution.jacobian.reshape(count, count)
+        jacobian[:count, -3] = solution.by_period.ravel()
+        jacobian[:count, -1] = solution.by_parameter.ravel()
+        jacobian[-2, :count] = self.reference(z).weights.ravel()
+        jacobian[-1, -2] = 1.0
+        return jacobian
+
+    # ------------------------------------------------------------------ what the engine asks
+
+    def degenerate(self, z: Array) -> bool:
+        """Return whether there is no amplitude, or it has changed sign at an equilibrium."""
+        series, reference = self.series(z), self.reference(z)
+        relative = amplitudes(series) / reference.scales
+        if float(relative.max()) < self.settings.smallest:
+            return True
+        return reference.correlation(series) < 0.0
+
+    def realised(self, z: Array) -> RealisedOrbit:
+        """Return the realisation on the exact orbit."""
+        key = z.tobytes()
+        if self._realised is None or self._realised[0] != key:
+            found = RealisedOrbit.along(self.solution(z), self.field, self.settings)
+            self._realised = (key, found)
+        return self._realised[1]
+
+    def floquet(self, z: Array) -> Floquet:
+        """Return the multipliers of the realisation along the exact orbit."""
+        return self.realised(z).floquet
+
+    def scales(self, z: Array) -> Array:
+        """Return the scales of the unknowns, the same for all harmonics, the period, and 1."""
+        series = np.tile(self.reference(z).scales, 2 * self.harmonics(z) + 1)
+        return np.concatenate((series, (abs(self.period(z)), 1.0)))
+
+    def ends(self, point: Point) -> Stopped | None:
+        """Return why the branch ends here: long period, no amplitude left, too few harmonics."""
+        z = point.z
+        if self._first_period is None:
+            self._first_period = self.period(z)
+        if self.period(z) > self.settings.longest * self._first_period:
+            return Stopped.PERIOD
+        if self.degenerate(z):
+            return None if self.reference(z).degenerate else Stopped.VANISHED
+        full = self.harmonics(z) >= self.settings.most_harmonics
+        if full and self.tail(z) > self.settings.poorest:
+            return Stopped.ACCURACY
+        return None
+
+    def adapt(self, z: Array, tangent: Array) -> tuple[Array, Array] | None:
+        """Take this orbit as the reference of the next, with as many harmonics as its tail asks."""
+        if self.degenerate(z):
+            return None
+        wanted = self._wanted(z)
+        if wanted != self.harmonics(z):
+            # if that fails the present ones serve, until they no longer do and the branch ends
+            with suppress(ConvergenceError, np.linalg.LinAlgError):
+                return self.with_harmonics(z, wanted, tangent)
+        return self._follow(z), tangent
+
+    # ------------------------------------------------------------------ harmonics
+
+    def _wanted(self, z: Array) -> int:
+        """Return how many harmonics the orbit should have."""
+        count, settings, series = self.harmonics(z), self.settings, self.series(z)
+        if self.tail(z) > settings.tail:
+            return min(int(np.ceil(_GROWTH * count)), settings.most_harmonics)
+        fewer = 2 * count // 3
+        if fewer >= settings.harmonics:
+            tail = float(tails(resized(series, fewer)).max())
+            if tail < _SPARE * settings.tail:
+                return fewer
+        return count
+
+    def _follow(self, z: Array) -> Array:
+        """Return `z` with this orbit itself as the reference of its phase."""
+        series = self.series(z).copy()
+        scales = np.maximum(self.reference(z).scales, amplitudes(series))
+        self._references.append(PhaseReference(series, turned(series), scales))
+        followed = np.array(z)
+        followed[-2] = len(self._references) - 1
+        return followed
+
+    def with_harmonics(
+        self, z: Array, harmonics: int, tangent: Array | None = None
+    ) -> tuple[Array, Array]:
+        """Solve for the same orbit with another number of harmonics.
+
+        Parameters
+        ----------
+        z : array ((2H + 1) m + 3,)
+            A solution.
+        harmonics : int
+            The number wanted.
+        tangent : array ((2H + 1) m + 3,), optional
+            The direction in which not to move; without it the parameter is held.
+
+        Returns
+        -------
+        tuple of array ((2H' + 1) m + 3,)
+            The solution, its own phase reference, and the direction of the branch; the direction
+            is that of the parameter where no tangent is given.
+
+        Raises
+        ------
+        ConvergenceError, numpy.linalg.LinAlgError
+            If the orbit is not found.
+        """
+        there = self._resized(z, harmonics)
+        reference = self.reference(z)
+        series = self.series(there)
+        self._references.append(PhaseReference(series, turned(series), reference.scales))
+        there[-2] = len(self._references) - 1
+        held = np.zeros(len(z)) if tangent is None else tangent.copy()
+        held[-1] = 1.0 if tangent is None else held[-1]
+        direction = self._resized(held, harmonics)
+        magnitudes = np.append(self.scales(there), max(1.0, abs(z[-1])))
+        there, tangential = self._polished(there, direction / magnitudes**2, magnitudes)
+        there = self._follow(there)
+        if tangent is None:
+            return there, direction
+        length = np.linalg.norm(direction / magnitudes) / np.linalg.norm(tangential / magnitudes)
+        return there, tangential * length
+
+    def _resized(self, z: Array, harmonics: int) -> Array:
+        return np.concatenate((resized(self.series(z), harmonics).ravel(), z[-TAIL:]))
+
+    def _polished(self, z: Array, row: Array, magnitudes: Array) -> tuple[Array, Array]:
+        """Return the solution on the hyperplane through `z`, and the direction of the branch."""
+        rhs = np.zeros((len(z), 2))
+        rhs[-1, 1] = 1.0
+        for _ in range(_POLISHING):
+            rhs[:-1, 0] = self.residual(z)
+            step, direction = self.bordered(z, row)(rhs).T
+            z = z - step
+            size = float(np.abs(step / magnitudes).max())
+            if size < _SAME:
+                return z, direction
+            if not size < 1.0:
+                break
+        raise ConvergenceError("the orbit was not found again with other harmonics")
+
+    # ------------------------------------------------------------------ results
+
+    def extrema(self, z: Array) -> tuple[Array, Array]:
+        """Return the highest and the lowest values (n,) of the states."""
+        return extrema(self.realised(z).spectrum)
+
+    def sample(self, z: Array, fractions: Array) -> Array:
+        """Return the states (n, m) at fractions (m,) of the period.
+
+        Those of the realisation's memory are its steady response to the exact orbit.
+        """
+        return evaluated(self.realised(z).spectrum, fractions)
+
+    def measures(self, z: Array) -> dict[str, float]:
+        """Return period, extremes of the model's states, tail, harmonics, and trivial error."""
+        own = self.model.ny
+        highest, lowest = extrema(self.solution(z).spectrum[:, :own])
+        measures = {"period": self.period(z)}
+        for j, state in enumerate(self.balance.compiled.states):
+            measures[f"max {state}"] = float(highest[j])
+            measures[f"min {state}"] = float(lowest[j])
+        measures["tail"] = self.tail(z)
+        measures["harmonics"] = float(self.harmonics(z))
+        measures["trivial error"] = self.floquet(z).trivial_error
+        return measures
