@@ -34,7 +34,7 @@ class Stopped(Enum):
         "another method."
     )
     STATIC = (
-        "The frequency of the Hopf points tends to zero, where the exact curve has no continuation; "
+        "The frequency of the Hopf points tends to zero, where the exact curve cannot go on; "
         "look for a fold there."
     )
     UNFOLDED = (

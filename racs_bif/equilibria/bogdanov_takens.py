@@ -29,10 +29,10 @@ class _BogdanovTakens(Detector):
         """Return the test function."""
 
     def data(self, problem: CurveProblem, point: Point) -> dict[str, Any] | None:
-        """Return the coefficients a and b; None where two zero eigenvalues have an eigenvector each.
+        """Return the coefficients a and b; None where each zero eigenvalue has its eigenvector.
 
-        On the centre manifold w0' = w1, w1' = a w0^2 + b w0 w1 with |q0| = 1, q0 . q1 = 0 (Kuznetsov,
-        section 8.4); both change sign with q0.
+        On the centre manifold w0' = w1, w1' = a w0^2 + b w0 w1 with |q0| = 1, q0 . q1 = 0
+        (Kuznetsov, section 8.4); both change sign with q0.
         """
         field, x, p = problem.realised(point.z)
         A = field.f_x(x, p)

@@ -40,12 +40,12 @@ class BranchPoint(Detector):
     def data(self, problem: EquilibriumProblem, point: Point) -> dict[str, Any]:
         """Return the kind of crossing and the direction (n+1,) of the other branch.
 
-        The kernel of (f_x, f_lambda) is spanned by (v, 0) and (w, 1), v being the null vector of f_x; psi
-        is that of its transpose. Branches leave along ``alpha (w, 1) + beta (v, 0)`` with
-        ``c22 alpha^2 + 2 c12 alpha beta + c11 beta^2 = 0``, c11 = <psi, B(v, v)> and so on. One of the two is
-        known: it gives the other without c22, save on the branch of a pitchfork itself, along
-        (v, 0). There w is taken orthogonal to v, which is the other branch where a reflection
-        is the reason for the pitchfork, and a start from which it is found elsewhere.
+        The kernel of (f_x, f_lambda) is spanned by (v, 0) and (w, 1), v being the null vector of
+        f_x; psi is that of its transpose. Branches leave along ``alpha (w, 1) + beta (v, 0)``,
+        ``c22 alpha^2 + 2 c12 alpha beta + c11 beta^2 = 0``, c11 = <psi, B(v, v)> and so on. One
+        of the two is known: it gives the other without c22, save on the branch of a pitchfork
+        itself, along (v, 0). There w is taken orthogonal to v, which is the other branch where a
+        reflection is the reason for the pitchfork, and a start from which it is found elsewhere.
         """
         z, field = point.z, problem.field
         x, p, dp = z[:-1], problem.path.vector(z[-1]), problem.path.direction(z[-1])

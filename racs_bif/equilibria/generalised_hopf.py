@@ -29,7 +29,7 @@ class GeneralisedHopf(Detector):
         return 0.0 if abs(cubic.c1.real) <= _NOISE * cubic.size else cubic.c1.real
 
     def data(self, problem: HopfCurve, point: Point) -> dict[str, Any] | None:
-        """Return frequency and second Lyapunov coefficient, l2 = Re c2 of w' = i omega w + c2 w |w|^4.
+        """Return frequency and second Lyapunov coefficient: w' = i omega w + c2 w |w|^4, l2 = Re c2.
 
         c2 = G32 / 12 in Kuznetsov's terms (section 8.7), |q| = 1.
         """

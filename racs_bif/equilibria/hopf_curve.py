@@ -40,9 +40,9 @@ class _Solved:
 class HopfCurve(CurveProblem):
     """Hopf points in two parameters; ``z = (x, kappa, lambda_1, lambda_2)``, kappa = omega**2.
 
-    f_x^2 + kappa has two null vectors at a Hopf point, and so has [f_x -1; kappa f_x], which is not
-    squared and therefore well scaled. Doubly bordered it gives a 2x2 matrix G, zero at a Hopf point,
-    with dG = -W^T dK V. Near the curve G is a sum of W^T V and W^T f_x V: its components along these
+    f_x^2 + kappa has two null vectors at a Hopf point, and so has [f_x -1; kappa f_x], which is
+    not squared and therefore well scaled. Doubly bordered it gives a 2x2 matrix G, zero at a Hopf
+    point, with dG = -W^T dK V. Near the curve G is a sum of W^T V and W^T f_x V: its components along these
     two are the two equations, the well chosen two of four. Where kappa is negative the curve
     is one of neutral saddles, with eigenvalues +-sqrt(-kappa); it passes through kappa = 0, a
     Bogdanov-Takens point, without noticing.
@@ -97,8 +97,8 @@ class HopfCurve(CurveProblem):
     def _choose(self, V: Array, W: Array) -> tuple[Array, Array]:
         """Return two 2x2 matrices, orthonormal, onto which G is projected.
 
-        W^T (dK) V is a combination of W^T V and W^T f_x V, in which the lower half of V is f_x times
-        the upper and kappa enters from the lower half of W.
+        W^T (dK) V is a combination of W^T V and W^T f_x V, in which the lower half of V is f_x
+        times the upper and kappa enters from the lower half of W.
         """
         n = self.n
         one, turn = W[n:].T @ V[:n], W[n:].T @ V[n:]

@@ -78,7 +78,9 @@ def fold_of_cycles(problem: HopfCurve, special: SpecialPoint, amplitude: float) 
     )
 
 
-def torus_at_zero_hopf(problem: CurveProblem, special: SpecialPoint, amplitude: float) -> OrbitGuess:
+def torus_at_zero_hopf(
+    problem: CurveProblem, special: SpecialPoint, amplitude: float
+) -> OrbitGuess:
     """Return the Neimark-Sacker point of an amplitude predicted at a zero-Hopf point.
 
     With w0' = gamma + nu w0 + G200 w0^2 / 2 + G011 r^2 + G111 w0 r^2 and r' = r (Re mu + Re G110 w0 + Re G021 r^2 / 2)

@@ -17,6 +17,7 @@ import numpy as np
 
 from racs_bif.errors import UsageError
 from racs_bif.fractional.filter import Filter, Realisation
+from racs_bif.fractional.residues import stack, static_slope
 
 if TYPE_CHECKING:
     from racs_bif.fractional.laws import Complex, Law
@@ -73,8 +74,8 @@ class Diffusive(Realisation):
         target = law(s)
         basis, offset = self._basis(law, s)
         weight = self._taper() / np.abs(target)
-        matrix = _stack(weight * basis)
-        free = _least_squares(matrix, _stack(weight * (target - offset)))
+        matrix = stack(weight * basis)
+        free = _least_squares(matrix, stack(weight * (target - offset)))
         return self._filter(law, free, 0.0 if law.integrates else law.static_gain)
 
     def derivative(self, law: Law, direction: Law) -> Filter:
@@ -82,14 +83,14 @@ class Diffusive(Realisation):
         s = self._samples()
         target, moved = law(s), law.along(direction, s)
         basis, offset = self._basis(law, s)
-        gain_slope = _static_slope(law, direction)
+        gain_slope = static_slope(law, direction)
         offset_slope = gain_slope * self._static_shape(law, s)
         weight = self._taper() / np.abs(target)
         weight_slope = -weight * np.real(moved / target)
-        matrix, right = _stack(weight * basis), _stack(weight * (target - offset))
+        matrix, right = stack(weight * basis), stack(weight * (target - offset))
         free = _least_squares(matrix, right)
-        matrix_slope = _stack(weight_slope * basis)
-        right_slope = _stack(weight_slope * (target - offset) + weight * (moved - offset_slope))
+        matrix_slope = stack(weight_slope * basis)
+        right_slope = stack(weight_slope * (target - offset) + weight * (moved - offset_slope))
         first = _least_squares(matrix, right_slope - matrix_slope @ free)
         triangle = np.asarray(np.linalg.qr(matrix, mode="r"))
         residual = matrix_slope.T @ (right - matrix @ free)
@@ -145,19 +146,5 @@ class Diffusive(Realisation):
         return Filter(np.diag(-rates), rates.copy(), gains, float(through))
 
 
-def _static_slope(law: Law, direction: Law) -> float:
-    if law.integrates:
-        return 0.0
-    fixed = law.numerator.exponents == 0.0, law.denominator.exponents == 0.0
-    n_p = float(direction.numerator.coefficients[fixed[0]].sum())
-    d_p = float(direction.denominator.coefficients[fixed[1]].sum())
-    return (n_p - law.static_gain * d_p) / law.denominator.at_zero
-
-
 def _least_squares(matrix: Array, right: Array) -> Array:
     return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0], dtype=float)
-
-
-def _stack(values: Complex) -> Array:
-    """Stack real and imaginary parts: (k, m) to (2 m, k), (m,) to (2 m,)."""
-    return np.concatenate([values.real, values.imag], axis=-1).T

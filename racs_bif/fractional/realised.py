@@ -9,6 +9,7 @@ import numpy as np
 
 from racs_bif.fractional.laws import Law, read_direction, read_numbers
 from racs_bif.symbolic.field import Array, VectorField, Vectors
+from racs_bif.symbolic.structure import Structure
 
 if TYPE_CHECKING:
     from racs_bif.fractional.filter import Filter, Realisation
@@ -153,6 +154,26 @@ class RealisedField(VectorField):
             varying = np.zeros((x.shape[1], size, size))
             varying[:, rows, columns] = values.T
         return np.asarray(frame.fixed + frame.left @ varying @ frame.right)
+
+    def structure(self, p: Array) -> Structure:
+        """Return the Jacobian's constant part and where it varies; see `Structure`."""
+        frame, compiled = self.frame(p), self.compiled
+        rows, columns = compiled.varying_at
+        varying_rows, row = np.unique(rows, return_inverse=True)
+        varying_columns, column = np.unique(columns, return_inverse=True)
+
+        def varying(x: Array) -> Array:
+            values = compiled.varying_jacobian(frame.right @ x, frame.P)
+            out = np.zeros((x.shape[1], len(varying_rows), len(varying_columns)))
+            out[:, row, column] = values.T
+            return out
+
+        return Structure(
+            constant=frame.fixed,
+            left=frame.left[:, varying_rows],
+            right=frame.right[varying_columns],
+            varying=varying,
+        )
 
     def f_p(self, x: Array, p: Array, dp: Array) -> Array:
         """Return the derivative of f along `dp`, shaped like `x`."""

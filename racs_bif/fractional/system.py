@@ -34,11 +34,15 @@ class System:
         Its base parameters.
     settings : Realisation
         How its fractional elements are realised.
+    loaded : str
+        Where `load_model` finds the model again: a name on the shelf, or the path of its file;
+        empty for one that was made in Python.
     """
 
     compiled: CompiledModel
     values: Array
     settings: Realisation
+    loaded: str = ""
 
     @property
     def name(self) -> str:

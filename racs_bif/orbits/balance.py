@@ -45,6 +45,13 @@ class Balance:
         Where the active parameter leads.
     active : float
         A value of it, at which the unknowns are chosen.
+
+    Attributes
+    ----------
+    elimination : Elimination
+        Which unknowns are given by affine rows.
+    felt : bool
+        Whether a nonlinearity depends on one of those.
     """
 
     def __init__(self, model: ExactModel, path: ParameterPath, active: float) -> None:
@@ -53,6 +60,7 @@ class Balance:
         fixed, varying = _places(self.compiled.meta["fixed"]), self.compiled.varying_at
         self.elimination: Elimination = choose(fixed, varying, model.laws(p), model.size)
         self.terms = _terms(self.elimination, fixed, varying, model.ny)
+        self.felt = bool(np.isin(varying[1], self.elimination.given).any())
 
     @property
     def kept(self) -> tuple[int, ...]:
@@ -191,33 +199,38 @@ class Balanced:
         return _assembled(self)
 
     @cached_property
-    def by_period(self) -> Array:
-        """Derivative of the residual by the period (2H + 1, m)."""
+    def slopes(self) -> tuple[Array, Array]:
+        """Derivatives of the residual by period and by active parameter, (2H + 1, m) each.
+
+        The affine rows are held in balance: the unknowns that they give move as well.
+        """
+        elimination = self.balance.elimination
+        moves = (self._by_period(), self._by_parameter())
+        if len(elimination.rows):
+            left, right = self.sides
+            for moved in moves:
+                given = elimination.given_by(-moved[:, elimination.rows], self.sides, self.fixed)
+                moved += left * given
+                if self.balance.felt:
+                    moved -= right * self.linearised(given)
+                else:
+                    moved -= right * (given @ self.fixed.T)
+        by_period, by_parameter = (to_real(moved[:, elimination.left]) for moved in moves)
+        return by_period, by_parameter
+
+    def _by_period(self) -> Complex:
         left, right = self.diagonals.slopes(self.s)
         moved = left * self.spectrum - right * self.responses
-        return self._reduced(moved * (-self.s / self.period)[:, None])
+        return np.asarray(moved * (-self.s / self.period)[:, None])
 
-    @cached_property
-    def by_parameter(self) -> Array:
-        """Derivative of the residual by the active parameter (2H + 1, m)."""
+    def _by_parameter(self) -> Complex:
         compiled = self.balance.compiled
-        direction = compiled.padded(self.dp)
-        directions = np.broadcast_to(direction[:, None], (len(direction), self.points.shape[1]))
-        slopes = analysed(compiled.core_p(self.points, self.padded, directions), self.harmonics)
-        moved = -self.sides[1] * slopes
+        slopes = compiled.core_p(self.points, self.padded, compiled.padded(self.dp))
+        moved = -self.sides[1] * analysed(slopes, self.harmonics)
         drifts = self.diagonals.drifts(self.s)
         if drifts is not None:
             moved += drifts[0] * self.spectrum - drifts[1] * self.responses
-        return self._reduced(moved)
-
-    def _reduced(self, moved: Complex) -> Array:
-        """Return the series of what moved in the rows left, the affine rows held in balance."""
-        elimination = self.balance.elimination
-        if len(elimination.rows):
-            given = elimination.given_by(-moved[:, elimination.rows], self.sides, self.fixed)
-            left, right = self.sides
-            moved = moved + left * given - right * self.linearised(given)
-        return to_real(moved[:, elimination.left])
+        return moved
 
     def linearised(self, change: Complex) -> Complex:
         """Return the spectrum of the core's Jacobian times a change of X (H + 1, n)."""

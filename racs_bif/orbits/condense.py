@@ -69,6 +69,19 @@ class Ring:
             new_after = np.concatenate((new_after, after[-1:]))
         return new_before, new_after
 
+    def sign(self) -> float:
+        """Return the sign that the condensation gives the determinant of the ring.
+
+        The determinant of P_m x_m - x_(m+1) on a ring is that of P_M ... P_1 - I, whatever M.
+        """
+        sign = 1.0
+        for level in self._levels:
+            half, size = level.left.shape[:2]
+            turned = float(np.prod(np.linalg.slogdet(level.turn)[0]))
+            triangular = float(np.prod(np.sign(np.diagonal(level.inverse, axis1=1, axis2=2))))
+            sign *= turned * triangular * (-1.0) ** (half * size)
+        return sign
+
     def reduce(self, rhs: Array) -> tuple[Array, list[Array]]:
         """Condense right-hand sides.
 
@@ -140,6 +153,10 @@ class BorderedRing:
         self._small[:size, size:] = condensed
         self._small[size:] = self._rows @ self._basis
         self._small[size:, size:] += corner
+
+    def sign(self) -> float:
+        """Return the sign of the determinant, the border last; see `Ring.sign`."""
+        return self._ring.sign() * float(np.linalg.slogdet(self._small)[0])
 
     def solve(self, rhs: Array, border: Array) -> tuple[Array, Array]:
         """Solve.

@@ -186,6 +186,17 @@ class HarmonicBalanceProblem(OrbitProblem):
             self._solution = (key, found)
         return self._solution[1]
 
+    def _near(self, z: Array) -> Balanced:
+        """Return the balance at `z`, or where it is known within rounding of it."""
+        if self._solution is not None:
+            known = np.frombuffer(self._solution[0])
+            if len(known) == len(z):
+                distance = np.abs(z - known) / np.append(self.scales(z), max(1.0, abs(z[-1])))
+                distance[-2] = 0.0
+                if float(distance.max()) < _SAME:
+                    return self._solution[1]
+        return self.solution(z)
+
     def residual(self, z: Array) -> Array:
         """Return what does not balance, the phase and the number's distance."""
         reference = self.reference(z)
@@ -195,11 +206,11 @@ class HarmonicBalanceProblem(OrbitProblem):
 
     def jacobian(self, z: Array) -> Array:
         """Return the exact derivative ((2H + 1) m + 2, (2H + 1) m + 3) of the residual."""
-        solution, count = self.solution(z), len(z) - TAIL
+        solution, count = self._near(z), len(z) - TAIL
         jacobian = np.zeros((count + 2, count + TAIL))
         jacobian[:count, :count] = solution.jacobian.reshape(count, count)
-        jacobian[:count, -3] = solution.by_period.ravel()
-        jacobian[:count, -1] = solution.by_parameter.ravel()
+        by_period, by_parameter = solution.slopes
+        jacobian[:count, -3], jacobian[:count, -1] = by_period.ravel(), by_parameter.ravel()
         jacobian[-2, :count] = self.reference(z).weights.ravel()
         jacobian[-1, -2] = 1.0
         return jacobian
@@ -218,7 +229,7 @@ class HarmonicBalanceProblem(OrbitProblem):
         """Return the realisation on the exact orbit."""
         key = z.tobytes()
         if self._realised is None or self._realised[0] != key:
-            found = RealisedOrbit.along(self.solution(z), self.field, self.settings)
+            found = RealisedOrbit.along(self._near(z), self.field, self.settings)
             self._realised = (key, found)
         return self._realised[1]
 
@@ -354,7 +365,7 @@ class HarmonicBalanceProblem(OrbitProblem):
     def measures(self, z: Array) -> dict[str, float]:
         """Return period, extremes of the model's states, tail, harmonics, and trivial error."""
         own = self.model.ny
-        highest, lowest = extrema(self.solution(z).spectrum[:, :own])
+        highest, lowest = extrema(self._near(z).spectrum[:, :own])
         measures = {"period": self.period(z)}
         for j, state in enumerate(self.balance.compiled.states):
             measures[f"max {state}"] = float(highest[j])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -27,14 +27,16 @@ class Reference:
     ----------
     mesh : Mesh
         The steps.
-    stages : array (N, 3, n)
-        The reference orbit at the Radau points.
-    velocities : array (N, 3, n)
+    stages : array (N, s, n)
+        The reference orbit at the points of a quadrature.
+    velocities : array (N, s, n)
         Its derivative with respect to time in units of the period.
     scales : array (n,)
         Typical magnitudes of the variation of the states, positive.
     degenerate : bool
         Whether `stages` is an equilibrium, from which a branch of orbits starts.
+    quadrature : array (s,)
+        Weights of the quadrature on a step, by default those of the Radau points.
     """
 
     mesh: Mesh
@@ -42,11 +44,12 @@ class Reference:
     velocities: Array
     scales: Array
     degenerate: bool = False
+    quadrature: Array = field(default_factory=lambda: WEIGHTS)
 
     @cached_property
     def weights(self) -> Array:
-        """Weights (N, 3, n) of the phase condition, normalised: a shift by s gives s."""
-        quadrature = self.mesh.widths[:, None, None] * WEIGHTS[:, None]
+        """Weights (N, s, n) of the phase condition, normalised: a shift by t gives t."""
+        quadrature = self.mesh.widths[:, None, None] * self.quadrature[:, None]
         weights = quadrature * self.velocities / self.scales**2
         return np.asarray(weights / np.sum(weights * self.velocities))
 
@@ -60,7 +63,7 @@ class Reference:
         It is close to 1 along a branch, and close to -1 across an equilibrium of no amplitude, on
         whose other side the same orbits are met again, half a period later.
         """
-        quadrature = self.mesh.widths[:, None, None] * WEIGHTS[:, None]
+        quadrature = self.mesh.widths[:, None, None] * self.quadrature[:, None]
         here = (stages - np.sum(quadrature * stages, axis=(0, 1))) / self.scales
         if self.degenerate:
             return 1.0

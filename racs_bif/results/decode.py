@@ -7,7 +7,7 @@ from operator import itemgetter
 import numpy as np
 
 from racs_bif.results.branch import Branch, Profile
-from racs_bif.results.encode import DATA, EIGENVALUES, SPECTRA, TIME
+from racs_bif.results.encode import DATA, EIGENVALUES, SETTING, SPECTRA, TIME
 from racs_bif.results.provenance import RealisationInfo, SystemInfo
 from racs_bif.results.special import ExactPoint, SpecialPoint, Value
 from racs_bif.results.tree import (
@@ -64,6 +64,11 @@ def _decode_system(node: Node) -> SystemInfo:
             states=_integer(how, "states"),
             band=(float(low), float(high)),
             error=_real(how, "error"),
+            settings={
+                name.removeprefix(SETTING): value
+                for name, value in how.attributes.items()
+                if name.startswith(SETTING) and isinstance(value, int | float)
+            },
         )
     values = node.variables["parameter_value"].data.tolist()
     units = zip(
@@ -77,6 +82,8 @@ def _decode_system(node: Node) -> SystemInfo:
         units=dict(units),
         shown=str(node.attributes["shown"]),
         realisation=realisation,
+        loaded=str(node.attributes.get("loaded", "")),
+        equations=str(node.attributes.get("equations", "")),
     )
 
 

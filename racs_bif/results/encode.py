@@ -27,6 +27,8 @@ POINT, TIME, ROOT = "point", "time", "root"
 """Dimensions: points along a branch, time along an orbit, eigenvalues or multipliers."""
 DATA = "data."
 """What the names of attributes begin with that a detector found."""
+SETTING = "setting."
+"""What the names of attributes begin with that are settings of a realisation."""
 SPECTRA = {"orbit": "multipliers"}
 """What the spectrum of a kind of branch is called, where it is not eigenvalues."""
 EIGENVALUES = "eigenvalues"
@@ -79,6 +81,8 @@ def _encode_system(system: SystemInfo) -> Node:
             "variant": system.variant,
             "shown": system.shown,
             "version": system.version,
+            "loaded": system.loaded,
+            "equations": system.equations,
             **_listed("states", system.states),
             **_listed("notes", system.notes),
         }
@@ -92,7 +96,12 @@ def _encode_system(system: SystemInfo) -> Node:
     if system.realisation is not None:
         how = system.realisation
         node.groups["realisation"] = Node(
-            {"name": how.name, "states": how.states, "error": how.error},
+            {
+                "name": how.name,
+                "states": how.states,
+                "error": how.error,
+                **{f"{SETTING}{name}": value for name, value in how.settings.items()},
+            },
             {"band": Variable(("end",), _numbers(how.band), {"units": "rad/s"})},
         )
     return node

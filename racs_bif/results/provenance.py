@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import hashlib
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -25,12 +26,15 @@ class RealisationInfo:
         Frequencies between which it is meant to hold, rad/s.
     error : float
         Largest relative error of the frequency response over the band.
+    settings : dict of str to int or float
+        Its other settings, by the names of the method's class: order, sections, omega, ...
     """
 
     name: str
     states: int
     band: tuple[float, float]
     error: float
+    settings: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +59,11 @@ class SystemInfo:
         What a user must be told whenever the result is shown.
     version : str
         The racs_bif that computed it.
+    loaded : str
+        Where `load_model` finds the model again: a name on the shelf, or the path of its file;
+        empty for one that was made in Python.
+    equations : str
+        Digest of the model's equations, by which one that was changed since is known.
     """
 
     model: str
@@ -67,6 +76,8 @@ class SystemInfo:
     realisation: RealisationInfo | None = None
     notes: tuple[str, ...] = ()
     version: str = ""
+    loaded: str = ""
+    equations: str = ""
 
     def unit(self, quantity: str) -> str:
         """Return the unit of a state, output, parameter or measure; empty where there is none."""
@@ -91,10 +102,32 @@ def describe(system: System) -> SystemInfo:
         units=system.state_units | {p.name: p.unit for p in system.parameter_table},
         shown=inputs[0] if inputs else "",
         realisation=RealisationInfo(
-            name=how.name, states=how.states, band=how.band, error=float(how.error)
+            name=how.name,
+            states=how.states,
+            band=how.band,
+            error=float(how.error),
+            settings={
+                f.name: value
+                for f in fields(system.settings)
+                if isinstance(value := getattr(system.settings, f.name), int | float)
+            },
         )
         if system.fractional
         else None,
         notes=tuple(system.notes),
         version=__version__,
+        loaded=system.loaded,
+        equations=equations_digest(system),
     )
+
+
+def equations_digest(system: System) -> str:
+    """Return a digest of what a model means: its equations, elements and derived parameters.
+
+    Titles, units, notes and default values leave it as it is.
+    """
+    meta = system.compiled.meta
+    told = {key: meta[key] for key in ("states", "equations", "mass", "elements")}
+    told["parameters"] = [p["name"] for p in meta["parameters"]]
+    told["derived"] = [(d["name"], d["expression"], d["sets"]) for d in meta["derived"]]
+    return hashlib.sha256(repr(told).encode()).hexdigest()

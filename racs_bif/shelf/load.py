@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import functools
 import hashlib
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -103,7 +104,59 @@ def load_model(
     def again(options: Mapping[str, str]) -> CompiledModel:
         return _compiled(path, dict(options))
 
-    return _system(compiled, again, parameters, realisation, band, order)
+    system = _system(compiled, again, parameters, realisation, band, order)
+    return replace(system, loaded=str(path) if name.endswith(".py") else name)
+
+
+def system_at(
+    name: str,
+    values: Mapping[str, float],
+    *,
+    variant: str = "",
+    realisation: Realisation | None = None,
+) -> System:
+    """Load a model with every base parameter given, bit for bit: nothing is calibrated or checked.
+
+    Parameters
+    ----------
+    name : str
+        As for `load_model`.
+    values : mapping of str to float
+        Values of all base parameters; others are passed over.
+    variant : str
+        Variant of the model, as it calls itself; empty where it has none.
+    realisation : Realisation, optional
+        How fractional elements are realised.
+
+    Raises
+    ------
+    UsageError
+        If the model is unknown.
+    ModelError
+        If the file fails, what it builds cannot be compiled, or a parameter has no value.
+    """
+    path = find("models", name)
+    compiled = _compiled(path, {})
+    if compiled.meta["variant"] != variant:
+        compiled = _compiled(path, {"variant": variant})
+    settings = realisation or choose_realisation(None, tuple(compiled.meta["band"]))
+    loaded = str(path) if name.endswith(".py") else name
+    return System(compiled, base_values(compiled, values), settings, loaded)
+
+
+def base_values(compiled: CompiledModel, values: Mapping[str, float]) -> Array:
+    """Return all base parameters (np,) of a model, bit for bit.
+
+    Raises
+    ------
+    ModelError
+        If one has no value.
+    """
+    for parameter in compiled.parameters:
+        if parameter.name not in values:
+            msg = f"model '{compiled.name}' has a parameter '{parameter.name}' that has no value"
+            raise ModelError(f"{msg} here; use the model that the result was computed with")
+    return np.array([values[p.name] for p in compiled.parameters], dtype=float)
 
 
 def system_of(

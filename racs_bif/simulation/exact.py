@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array
 
 Progress = Callable[[float], None]
+INTERRUPTED = "The user interrupted."
 _NEWTON = 1e-9  # relative correction after which the next one is below rounding
 _ITERATIONS = 12
 _REPORTS = 200
@@ -116,7 +117,7 @@ class ExactStepper:
                 if progress is not None and n % every == 0:
                     progress(float(self.times[n]))
         except KeyboardInterrupt:
-            return self._ended(X[:n], "The user interrupted.")
+            return self._ended(X[:n], INTERRUPTED)
         except ConvergenceError as error:
             if n == 1:
                 raise

@@ -101,15 +101,15 @@ class ExponentialMemory(Memory):
     def __init__(self, laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> None:
         powers = [row for law in laws for row in (law.numerator, law.denominator)]
         sums = exponential_sum(tuple(powers), step, count, tolerance)
-        near_n = np.array([sums.nearby(law.numerator) for law in laws])
-        near_d = np.array([sums.nearby(law.denominator) for law in laws])
+        near_n = _rows([sums.nearby(law.numerator) for law in laws], sums.near)
+        near_d = _rows([sums.nearby(law.denominator) for law in laws], sums.near)
         first = near_d[:, 0]
         self.gain = near_n[:, 0] / first
         # In order of time, like the signals: the oldest first.
         self._near = np.stack([near_n, -near_d])[:, :, :0:-1] / first[:, None]
         arriving = np.exp(-sums.near * sums.rates)
-        far_n = np.array([sums.far(law.numerator) for law in laws])
-        far_d = np.array([sums.far(law.denominator) for law in laws])
+        far_n = _rows([sums.far(law.numerator) for law in laws], len(sums.rates))
+        far_d = _rows([sums.far(law.denominator) for law in laws], len(sums.rates))
         self._arrive = np.stack([far_n, -far_d]) * arriving / first[:, None]
         self._fade = np.exp(-sums.rates)
         self._states = np.zeros_like(far_n)
@@ -134,15 +134,17 @@ class ExponentialMemory(Memory):
 
 
 def _full(laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> Memory:  # noqa: ARG001
-    return FullMemory(_stacked([quadrature_weights(law, step, count + 1) for law in laws], count))
+    return FullMemory(
+        _rows([quadrature_weights(law, step, count + 1) for law in laws], count + 1)
+    )
 
 
 def _l1(laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> Memory:  # noqa: ARG001
-    return FullMemory(_stacked([l1_weights(law, step, count + 1) for law in laws], count))
+    return FullMemory(_rows([l1_weights(law, step, count + 1) for law in laws], count + 1))
 
 
-def _stacked(rows: list[Array], count: int) -> Array:
-    return np.array(rows).reshape(len(rows), count + 1)
+def _rows(rows: list[Array], width: int) -> Array:
+    return np.array(rows).reshape(len(rows), width)
 
 
 METHODS: Final[dict[str, Build]] = {"bdf2": _full, "l1": _l1, "fast": ExponentialMemory}

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.structure import Structure
 
 Array = NDArray[np.float64]
 """Real array."""
@@ -54,6 +57,14 @@ class VectorField(ABC):
         directions = np.tile(np.eye(n), (1, count))
         forms = self.f_xx(x, p, np.repeat(v, n, axis=1), directions)
         return np.asarray(forms.reshape(n, count, n).transpose(1, 0, 2))
+
+    def structure(self, p: Array) -> Structure | None:
+        """Return which entries of the Jacobian vary with the state; None where that is not known.
+
+        Solvers use it where it makes them faster; they need nothing but `f_x`.
+        """
+        del p
+        return None
 
     @abstractmethod
     def f_xxx(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:

@@ -163,16 +163,22 @@ class Jet:
         return Jet(self.algebra, result)
 
 
-def _base(number: Jet | float) -> float:
+Number = Jet | float
+
+
+def _base(number: Number) -> float:
     return number.base if isinstance(number, Jet) else number
 
 
-def _elementary(name: str) -> Callable[[Any], Any]:
+
+
+
+def _elementary(name: str) -> Callable[[Number], Number]:
     series, plain = ELEMENTARY[name], getattr(SCALAR, name)
 
-    def function(x: Any) -> Any:
+    def function(x: Number) -> Number:
         if not isinstance(x, Jet):
-            return plain(x)
+            return float(plain(x))
         return x.composed(series(x.base, x.algebra.degree))
 
     return function
@@ -181,17 +187,17 @@ def _elementary(name: str) -> Callable[[Any], Any]:
 _FUNCTIONS: Final = {name: _elementary(name) for name in ELEMENTARY}
 
 
-def _pow(a: Any, b: Any) -> Any:
+def _pow(a: Number, b: Number) -> Number:
     if isinstance(b, Jet):
         if np.any(b.c[1:]):
             return _FUNCTIONS["exp"](b * _FUNCTIONS["log"](a))
         b = b.base
     if isinstance(a, Jet):
         return a.composed(power(a.base, b, a.algebra.degree))
-    return SCALAR.pow(a, b)
+    return float(SCALAR.pow(a, b))
 
 
-def _absorb(a: Any, b: Any) -> Any:
+def _absorb(a: Number, b: Number) -> Number:
     zero = not np.any(b.c) if isinstance(b, Jet) else b == 0.0
     return 0.0 if zero else a * b
 
@@ -211,7 +217,7 @@ class JetFunctions:
 
     def __init__(self, text: str) -> None:
         namespace: dict[str, Any] = {}
-        exec(compile(text, "<racs_bif jets>", "exec"), namespace)  # noqa: S102 - our own text
+        exec(compile(text, "<racs_bif jets>", "exec"), namespace)  # our own text
         self._functions: dict[str, Callable[..., Any]] = namespace["make"](JETS)
 
     def __call__(self, name: str, algebra: Algebra, *groups: Coefficients) -> Coefficients:

@@ -64,7 +64,7 @@ def continue_curve(
 ) -> Branch:
     """Follow a special equilibrium in two parameters.
 
-    Codimension-two points are located: CP and ZH and BT on a fold curve; BT, GH, ZH and HH on a Hopf
+    Codimension-two points are located: CP, BT and ZH on a fold curve; BT, GH, ZH and HH on a Hopf
     curve. Beyond BT a Hopf curve goes on as a curve of neutral saddles, measure ``neutral`` 1.
 
     Parameters
@@ -182,7 +182,10 @@ def _spans(
         low, high = check_span(system, name, span or known or _guessed(system, name))
         value = system.parameters[name]
         if not low <= value <= high:
-            msg = f"the span {low:g} to {high:g} of '{name}' leaves out the start at {value:g}; widen it"
+            msg = (
+                f"the span {low:g} to {high:g} of '{name}' leaves out the start at {value:g}; "
+                "widen it"
+            )
             raise UsageError(msg)
         found.append((low, high))
     return found[0], found[1]
@@ -225,7 +228,7 @@ class _Start:
         static, X = StaticField(system.exact), system.exact_point(self.x, system.values)
         if kind == "hopf":
             if not omega > 0.0:
-                msg = "the exact Hopf curve ends where omega is zero; follow the realised one from there"
+                msg = "the exact Hopf curve ends at omega = 0; follow the realised one from there"
                 raise UsageError(msg)
             z = np.concatenate([X, [omega], values])
             return ExactHopfCurve(static, field, *common, _outputs(system)), z

@@ -209,7 +209,10 @@ def test_lorenz84_curves(lorenz84):
     spans = ((0.5, 4.0), (-0.1, 0.1))
     folds = continue_curve(lorenz84["LP1"], ("F", "T"), spans)
     takens = [[1.44671670111536, 0.0209401696833226], [1.44671670111536, -0.0209401696833226]]
-    zero_hopf = [[1.28341929613827, 0.000126540834120498], [1.28341929613827, -0.000126540834120498]]
+    zero_hopf = [
+        [1.28341929613827, 0.000126540834120498],
+        [1.28341929613827, -0.000126540834120498],
+    ]
     assert_same_points(places(folds, "BT", "F", "T"), takens)
     assert_same_points(places(folds, "ZH", "F", "T"), zero_hopf, atol=1e-12)
     for point in only(folds, "BT"):
@@ -290,7 +293,9 @@ def test_one_dimensional_bratu():
     # Chebyshev collocation converges faster than any power: 14 points leave 1e-10.
     count = 14
     x = np.cos(np.pi * np.arange(count + 1) / count)
-    weights = np.where((np.arange(count + 1) % count) == 0, 2.0, 1.0) * (-1.0) ** np.arange(count + 1)
+    weights = np.where((np.arange(count + 1) % count) == 0, 2.0, 1.0) * (-1.0) ** np.arange(
+        count + 1
+    )
     first = np.outer(weights, 1.0 / weights) / (x[:, None] - x[None, :] + np.eye(count + 1))
     first -= np.diag(first.sum(axis=1))
     second = (4.0 * first @ first)[1:-1, 1:-1]
@@ -378,7 +383,11 @@ def planes(shimmy):
 
 
 def test_vehicle_exact_curve_passes_the_known_points(shimmy):
-    known = {20000.0: (4.5672697, 10.414023), 35000.0: (15.81316, 8.3598728), 40000.0: (22.318792, 7.4845221)}
+    known = {
+        20000.0: (4.5672697, 10.414023),
+        35000.0: (15.81316, 8.3598728),
+        40000.0: (22.318792, 7.4845221),
+    }
     for C_s, (u, omega) in known.items():
         # A span that ends at the wanted stiffness ends the curve exactly there.
         spans = ((3.0, 60.0), (min(C_s, 29000.0), max(C_s, 30000.0)))

@@ -43,7 +43,9 @@ def disguise():
             bent += sum(bend / 2 * ys[j] * ys[i] ** 2 for j in range(k) for i in range(j + 1))
             exact.append(ys[k] + bent)
         jacobian = sp.Matrix(exact).jacobian(ys).subs(dict(zip(ys, y, strict=True)))
-        rates = sp.Matrix([e.subs(dict(zip(old, u, strict=True)), simultaneous=True) for e in values.values()])
+        rates = sp.Matrix(
+            [e.subs(dict(zip(old, u, strict=True)), simultaneous=True) for e in values.values()]
+        )
         change = jacobian.LUsolve(rates)
         field = L * change
         return Model(

@@ -198,7 +198,7 @@ def test_default_orders_follow_the_band():
 
 def test_oustaloup_refuses_what_it_cannot_realise(law_of):
     realisation = Oustaloup(band=(1e-3, 1e3))
-    with pytest.raises(RacsBifError, match=r"'Z'.*use --realisation diffusive"):
+    with pytest.raises(RacsBifError, match=r"'Z'.*use --realisation fitted or diffusive"):
         realisation.realise(law_of("1/(1 + s**q)", q=0.5)[0])
     with pytest.raises(ParameterError, match=r"orders between 0 and 1, 'Z' has 1\.5"):
         realisation.realise(law_of("(1 + s**q)/(1 + s**a)", q=1.5, a=0.6)[0])

@@ -48,6 +48,7 @@ def test_special_points(summary):
         "parameters": {"u": 10.001},
         "omega": 9.51,
         "shift": {"u": -1e-4, "omega": -1e-3},
+        "l1": None,
     }
     assert hopf["eigenvector"] == [[1.0, 0.0], [0.0, -1.0], [None, 0.0]]
     assert [p["label"] for p in summary["special_points"]] == ["H", "UZ", "UZ", "NS"]

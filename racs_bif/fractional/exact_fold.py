@@ -1,0 +1,94 @@
+"""Folds of the equilibria of the exact fractional model, by Newton's method on their definition.
+
+Unknowns are the equilibrium X, one parameter and the real null vector v of the equilibrium
+equations' Jacobian (which is Delta(0) but for its sign); equations are equilibrium, ``J v = 0`` and
+``c v = 1``. All derivatives are exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from racs_bif.errors import ConvergenceError
+from racs_bif.fractional.static import StaticField
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.symbolic.field import Array
+    from racs_bif.symbolic.paths import ParameterPath
+
+_ITERATIONS = 25
+_TOLERANCE = 1e-12
+_ENOUGH = 1e-8
+
+
+@dataclass(frozen=True)
+class ExactFold:
+    """A fold of the exact model's equilibria.
+
+    Parameters
+    ----------
+    X : array (size,)
+        States and outputs of the elements.
+    value : float
+        The active parameter.
+    v : array (size,)
+        Null vector of the Jacobian.
+    residual : float
+        Largest last Newton correction, relative: what is left of the error.
+    """
+
+    X: Array
+    value: float
+    v: Array
+    residual: float
+
+
+def solve_fold(model: ExactModel, path: ParameterPath, X: Array, value: float) -> ExactFold:
+    """Solve for the fold near an estimate.
+
+    Parameters
+    ----------
+    model : ExactModel
+        The exact model.
+    path : ParameterPath
+        The active parameter.
+    X : array (size,)
+        Estimate of states and element outputs.
+    value : float
+        Estimate of the parameter.
+
+    Raises
+    ------
+    ConvergenceError
+        If Newton's method does not converge.
+    """
+    field, m = StaticField(model), model.size
+    v = null_vectors(field.f_x(X, path.vector(value)))[1]
+    z = np.concatenate([X, [value], v])
+    error = np.inf
+    for _ in range(_ITERATIONS):
+        residual, jacobian = _system(field, path, v, z)
+        try:
+            step = np.linalg.solve(jacobian, residual)
+        except np.linalg.LinAlgError:
+            break
+        if not np.all(np.isfinite(step)):
+            break
+        z = z - step
+        error = float(np.max(np.abs(step) / _magnitudes(z, m)))
+        if error < _TOLERANCE:
+            break
+    if not error < _ENOUGH:
+        msg = f"no exact fold found near {path.names[0]} = {value:g}"
+        raise ConvergenceError(msg)
+    return ExactFold(z[:m], float(z[m]), z[m + 1 :], error)
+
+
+def null_vectors[T: np.generic](
+    matrix: np.ndarray[tuple[int, ...], np.dtype[T]],
+) -> tuple[np.ndarray[tuple[int, ...], np.dtype[T]], np.ndarray[tuple[int, ...], np.dtype[T]]]:
+    raise NotImplementedError
