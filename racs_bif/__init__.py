@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from racs_bif.results.branch import Branch
     from racs_bif.results.diagram import Diagram
     from racs_bif.results.files import load, save
+    from racs_bif.results.history import TimeHistory
     from racs_bif.shelf.load import load_model
     from racs_bif.symbolic.model import (
         Calibration,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
         Parameter,
     )
     from racs_bif.symbolic.strings import model_from_strings
+    from racs_bif.verbs.simulate import simulate
 
 __version__ = "0.1.0.dev0"
 
@@ -44,6 +46,7 @@ _HOMES: Final = {
     "FractionalElement": "racs_bif.symbolic.model",
     "Model": "racs_bif.symbolic.model",
     "Parameter": "racs_bif.symbolic.model",
+    "TimeHistory": "racs_bif.results.history",
     "calibrate": "racs_bif.equilibria.calibrate",
     "all_equilibria": "racs_bif.verbs.all_equilibria",
     "continue_equilibria": "racs_bif.verbs.equilibria",
@@ -52,6 +55,7 @@ _HOMES: Final = {
     "load_model": "racs_bif.shelf.load",
     "model_from_strings": "racs_bif.symbolic.strings",
     "save": "racs_bif.results.files",
+    "simulate": "racs_bif.verbs.simulate",
     "spectrum": "racs_bif.verbs.spectrum",
 }
 
@@ -63,6 +67,7 @@ __all__ = [
     "FractionalElement",
     "Model",
     "Parameter",
+    "TimeHistory",
     "all_equilibria",
     "calibrate",
     "continue_equilibria",
@@ -71,6 +76,7 @@ __all__ = [
     "load_model",
     "model_from_strings",
     "save",
+    "simulate",
     "spectrum",
 ]
 

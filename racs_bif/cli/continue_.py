@@ -106,6 +106,10 @@ def run(arguments: Namespace) -> int:
     check_writable(arguments.out, FILES)
     system = open_system(arguments)
     _check_names(arguments, system)
+    if arguments.realisation == "fitted":
+        from racs_bif.verbs.realisations import fitted
+
+        system = fitted(system, arguments.parameter, span)
 
     done = Run()
     try:
@@ -152,9 +156,7 @@ def _compute(arguments: Namespace, system: System, done: Run) -> None:
     name, span, at = arguments.parameter, (arguments.low, arguments.high), tuple(arguments.at)
     with _interruptible(done), progress(arguments) as task:
         report = task("equilibria", span)
-        found = all_equilibria(
-            system, name, span, at=at, probes=arguments.probes, progress=report
-        )
+        found = all_equilibria(system, name, span, at=at, probes=arguments.probes, progress=report)
         done.branches.extend(found)
         if arguments.orbits == "none":
             return

@@ -105,7 +105,9 @@ def _tell(found: Spectrum, arguments: Namespace) -> None:
     screen = console(arguments)
     screen.print(heading(found.system))
     roots = found.roots
-    table = Table(title=f"\nExact roots with Re s > {roots.above:g}", title_justify="left", box=None)
+    table = Table(
+        title=f"\nExact roots with Re s > {roots.above:g}", title_justify="left", box=None
+    )
     for title in ("Re s [1/s]", "Im s [rad/s]", "Hz", "last correction", "realisation off by"):
         table.add_column(title, justify="right")
     rows = zip(roots.roots.tolist(), roots.errors.tolist(), found.shifts.tolist(), strict=True)

@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 def pair_vectors(A: Array, omega: float, own: int) -> tuple[Complex, Complex]:
-    """Return q, p (n,) with A q = i omega q, A^T p = -i omega p, <p, q> = 1, |q| = 1 over own states."""
+    """Return q, p (n,) of a pair: A q = i omega q, A^T p = -i omega p, <p, q> = 1.
+
+    |q| = 1 over own states.
+    """
     from scipy.linalg import eig
 
     values, left, right = eig(A, left=True, right=True)

@@ -1,9 +1,9 @@
 """Curves of special equilibria in two parameters: what they have in common.
 
-Each is a minimally augmented system (W. Govaerts, *Numerical Methods for Bifurcations of
-Dynamical Equilibria*, SIAM 2000, chapters 3 and 4; Yu. A. Kuznetsov, *Elements of Applied
-Bifurcation Theory*, chapter 10): f = 0 with one or two scalars that vanish where a matrix is singular enough. The scalars
-come from bordered solves, and so do their derivatives, exactly.
+Each is a minimally augmented system (W. Govaerts, *Numerical Methods for Bifurcations of Dynamical
+Equilibria*, SIAM 2000, chapters 3 and 4; Yu. A. Kuznetsov, *Elements of Applied Bifurcation
+Theory*, chapter 10): f = 0 with one or two scalars that vanish where a matrix is singular enough.
+The scalars come from bordered solves, and so do their derivatives, exactly.
 """
 
 from __future__ import annotations

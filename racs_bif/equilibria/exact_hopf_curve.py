@@ -46,8 +46,8 @@ class ExactHopfCurve(CurveProblem):
     """Hopf points of the exact model; ``z = (y, w, omega, lambda_1, lambda_2)``.
 
     With [Delta(i omega) b; c^H 0] (v, g) = (0, 1) and its adjoint for w, the complex g vanishes
-    with the determinant, and dg = -w^H (d Delta) v. Where omega tends to zero s**alpha is not smooth: there
-    the curve ends. Other eigenvalues are those of the realisation at rest there.
+    with the determinant, and dg = -w^H (d Delta) v. Where omega tends to zero s**alpha is not
+    smooth: there the curve ends. Other eigenvalues are those of the realisation at rest there.
 
     Parameters
     ----------
@@ -162,7 +162,8 @@ class ExactHopfCurve(CurveProblem):
         """Return the cubic coefficient of the exact Hopf point at z.
 
         As for an ordinary one, each harmonic k seen through Delta(k i omega): steady oscillations
-        are the same for the exact operator and for a filter that agrees with it at these frequencies.
+        are the same for the exact operator and for a filter that agrees with it at these
+        frequencies.
         """
         if self._cubic is None or not np.array_equal(self._cubic[0], z):
             self._cubic = z.copy(), self._cubic_at(z)

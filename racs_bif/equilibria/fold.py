@@ -28,7 +28,8 @@ class Fold(Detector):
         """Return the quadratic coefficient a of the fold's normal form.
 
         With f_x q = 0, f_x^T p = 0, |q| = 1, <p, q> = 1: ``a = <p, B(q, q)> / 2`` (Yu. A.
-        Kuznetsov, *Elements of Applied Bifurcation Theory*, section 5.4); its sign depends on that of q.
+        Kuznetsov, *Elements of Applied Bifurcation Theory*, section 5.4); its sign depends on that
+        of q.
         """
         x, p = point.z[:-1], problem.path.vector(point.z[-1])
         left, singular, right = np.linalg.svd(problem.field.f_x(x, p))

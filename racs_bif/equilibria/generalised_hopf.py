@@ -29,9 +29,9 @@ class GeneralisedHopf(Detector):
         return 0.0 if abs(cubic.c1.real) <= _NOISE * cubic.size else cubic.c1.real
 
     def data(self, problem: HopfCurve, point: Point) -> dict[str, Any] | None:
-        """Return frequency and second Lyapunov coefficient: w' = i omega w + c2 w |w|^4, l2 = Re c2.
+        """Return frequency and second Lyapunov coefficient l2 = Re c2.
 
-        c2 = G32 / 12 in Kuznetsov's terms (section 8.7), |q| = 1.
+        w' = i omega w + c2 w |w|^4, c2 = G32 / 12 in Kuznetsov's terms (section 8.7), |q| = 1.
         """
         cubic = problem.cubic(point.z)
         # Beside what it was before, for all its terms may vanish together; at a pole it is large.

@@ -35,8 +35,9 @@ class Hopf(Detector):
     def value(self, problem: EquilibriumProblem, point: Point) -> float:
         """Return the smallest of the sums that can change sign, with the sign of their product.
 
-        All sums of two eigenvalues multiply to the determinant of the bialternate product (Kuznetsov,
-        section 10.2.2). Sums of conjugates and of two real eigenvalues are real and decide its sign.
+        All sums of two eigenvalues multiply to the determinant of the bialternate product
+        (Kuznetsov, section 10.2.2). Sums of conjugates and of two real eigenvalues are real and
+        decide its sign.
         """
         del problem
         sums = real_sums(point.spectrum)[0]

@@ -42,10 +42,10 @@ class HopfCurve(CurveProblem):
 
     f_x^2 + kappa has two null vectors at a Hopf point, and so has [f_x -1; kappa f_x], which is
     not squared and therefore well scaled. Doubly bordered it gives a 2x2 matrix G, zero at a Hopf
-    point, with dG = -W^T dK V. Near the curve G is a sum of W^T V and W^T f_x V: its components along these
-    two are the two equations, the well chosen two of four. Where kappa is negative the curve
-    is one of neutral saddles, with eigenvalues +-sqrt(-kappa); it passes through kappa = 0, a
-    Bogdanov-Takens point, without noticing.
+    point, with dG = -W^T dK V. Near the curve G is a sum of W^T V and W^T f_x V: its components
+    along these two are the two equations, the well chosen two of four. Where kappa is negative the
+    curve is one of neutral saddles, with eigenvalues +-sqrt(-kappa); it passes through kappa = 0,
+    a Bogdanov-Takens point, without noticing.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
 """Normal form of a Hopf point on the centre manifold.
 
-Yu. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 3.5 and 5.4: with A q = i omega q,
-A^T p = -i omega p, <p, q> = 1 the amplitude obeys ``w' = mu w + c1 w |w|^2``. Memory states of a realisation
-are left out of the length |q| = 1, so that the coefficients tend to those of the exact model.
+Yu. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 3.5 and 5.4: with A q = i
+omega q, A^T p = -i omega p, <p, q> = 1 the amplitude obeys ``w' = mu w + c1 w |w|^2``. Memory
+states of a realisation are left out of the length |q| = 1, so that the coefficients tend to those
+of the exact model.
 """
 
 from __future__ import annotations

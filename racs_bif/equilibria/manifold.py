@@ -1,14 +1,14 @@
 """Centre manifolds and normal forms by power series, to any degree, for any number of modes.
 
-On the centre manifold ``x = x0 + sum_a H_a w**a`` the amplitudes obey
-``w_i' = lambda_i w_i + sum_a g_ia w**a``. Degree by degree (Yu. A. Kuznetsov, *SIAM J. Numer. Anal.*
-36 (1999) 1104-1124)::
+On the centre manifold ``x = x0 + sum_a H_a w**a`` the amplitudes obey ``w_i' = lambda_i w_i +
+sum_a g_ia w**a``. Degree by degree (Yu. A. Kuznetsov, *SIAM J. Numer. Anal.* 36 (1999)
+1104-1124)::
 
     (<a, lambda> - A) H_a = F_a - sum_i g_ia q_i - (terms of lower degree)
 
 where F_a is the coefficient of w**a in f. A monomial is kept in the equation of mode i, the only
-way to solve this, where it turns at the same frequency as w_i. Coefficients are those of the powers: no
-factorials. Complex amplitudes come with their conjugates as modes of their own.
+way to solve this, where it turns at the same frequency as w_i. Coefficients are those of the
+powers: no factorials. Complex amplitudes come with their conjugates as modes of their own.
 """
 
 from __future__ import annotations

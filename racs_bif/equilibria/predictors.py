@@ -1,8 +1,8 @@
 """Where curves of cycles and of homoclinic orbits leave points of codimension two.
 
-Leading order of the unfoldings in Yu. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 8.
-The curve on which the point was found is used as it is, so that its curvature in the plane of
-parameters needs no second derivatives by them.
+Leading order of the unfoldings in Yu. A. Kuznetsov, *Elements of Applied Bifurcation Theory*,
+chapter 8. The curve on which the point was found is used as it is, so that its curvature in the
+plane of parameters needs no second derivatives by them.
 """
 
 from __future__ import annotations
@@ -42,8 +42,9 @@ _SMALLEST = 1e-3
 def fold_of_cycles(problem: HopfCurve, special: SpecialPoint, amplitude: float) -> OrbitGuess:
     """Return the fold of cycles of an amplitude predicted at a generalised Hopf point.
 
-    Re mu + Re c1 r^2 + l2 r^4 has a double root r^2 = -Re c1 / (2 l2): a Hopf point with that Re c1 is
-    looked for along the curve, then a parameter is moved across it to Re mu = (Re c1)^2 / (4 l2).
+    Re mu + Re c1 r^2 + l2 r^4 has a double root r^2 = -Re c1 / (2 l2): a Hopf point with that Re
+    c1 is looked for along the curve, then a parameter is moved across it to Re mu = (Re c1)^2 / (4
+    l2).
 
     Parameters
     ----------
@@ -83,9 +84,9 @@ def torus_at_zero_hopf(
 ) -> OrbitGuess:
     """Return the Neimark-Sacker point of an amplitude predicted at a zero-Hopf point.
 
-    With w0' = gamma + nu w0 + G200 w0^2 / 2 + G011 r^2 + G111 w0 r^2 and r' = r (Re mu + Re G110 w0 + Re G021 r^2 / 2)
-    the cycle of amplitude r has eigenvalues of zero sum there; to leading order this is linear in
-    w0 and in the parameters, which enter by gamma, nu and mu.
+    With w0' = gamma + nu w0 + G200 w0^2 / 2 + G011 r^2 + G111 w0 r^2 and r' = r (Re mu + Re G110
+    w0 + Re G021 r^2 / 2) the cycle of amplitude r has eigenvalues of zero sum there; to leading
+    order this is linear in w0 and in the parameters, which enter by gamma, nu and mu.
 
     Raises
     ------
@@ -179,9 +180,9 @@ def tori_at_double_hopf(
 def homoclinic(problem: FoldCurve, z: Array, a: float, b: float, epsilon: float) -> HomoclinicGuess:
     """Return the homoclinic orbit of size epsilon predicted at a Bogdanov-Takens point.
 
-    In w0'' = beta1 + beta2 w0' + a w0^2 + b w0 w0' it lies at beta1 = -4 epsilon^4 / a, beta2 = 10 b epsilon^2 / (7 a). The
-    point of the fold curve with that beta2, its second small eigenvalue, has beta1 = 0; from there the
-    parameters move across the curve.
+    In w0'' = beta1 + beta2 w0' + a w0^2 + b w0 w0' it lies at beta1 = -4 epsilon^4 / a, beta2 = 10
+    b epsilon^2 / (7 a). The point of the fold curve with that beta2, its second small eigenvalue,
+    has beta1 = 0; from there the parameters move across the curve.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ class ZeroOnHopf(_ZeroHopf):
     crossings = 1
 
     def value(self, problem: CurveProblem, point: Point) -> float:
-        """Return the real eigenvalue nearest to zero with the sign of the product of all of them."""
+        """Return the real eigenvalue nearest to zero, signed by the product of all of them."""
         rest = problem.noncritical(point.spectrum)
         real = rest[rest.imag == 0.0].real
         if not len(real):

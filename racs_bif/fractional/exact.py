@@ -108,9 +108,7 @@ class ExactModel:
         msg = "no equilibrium found near the model's guess; give a better guess or another value"
         raise ConvergenceError(msg)
 
-    def _damped(
-        self, X: Array, p: Array, step: Array, value: Array
-    ) -> tuple[Array, Array, float]:
+    def _damped(self, X: Array, p: Array, step: Array, value: Array) -> tuple[Array, Array, float]:
         """Return the next iterate, by the longest halved step that lowers the next correction."""
         jacobian = self.jacobian(X, p)
         size = float(np.abs(step).max())

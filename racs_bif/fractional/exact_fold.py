@@ -8,7 +8,7 @@ equations' Jacobian (which is Delta(0) but for its sign); equations are equilibr
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.static import StaticField
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.fractional.exact import ExactModel
     from racs_bif.symbolic.field import Array
     from racs_bif.symbolic.paths import ParameterPath
@@ -88,7 +90,39 @@ def solve_fold(model: ExactModel, path: ParameterPath, X: Array, value: float) -
     return ExactFold(z[:m], float(z[m]), z[m + 1 :], error)
 
 
-def null_vectors[T: np.generic](
-    matrix: np.ndarray[tuple[int, ...], np.dtype[T]],
-) -> tuple[np.ndarray[tuple[int, ...], np.dtype[T]], np.ndarray[tuple[int, ...], np.dtype[T]]]:
-    raise NotImplementedError
+def null_vectors(matrix: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return left and right null vectors (size,) of a nearly singular matrix.
+
+    They are singular vectors of the matrix with its rows scaled: ``left`` borders it from the right,
+    ``conj(right)`` from below, so that the bordered matrix is regular.
+    """
+    rows = np.abs(matrix).max(axis=1, keepdims=True)
+    rows[rows == 0.0] = 1.0
+    left, _, right = np.linalg.svd(matrix / rows)
+    return rows[:, 0] * left[:, -1], right[-1].conj()
+
+
+def _magnitudes(z: Array, m: int) -> Array:
+    """Return what corrections are compared with; see `racs_bif.fractional.exact_hopf`."""
+    size = np.abs(z)
+    size[:m] = np.maximum(size[:m], max(1e-3 * float(size[:m].max()), 1e-12))
+    size[m] = max(float(size[m]), 1e-3)
+    size[m + 1 :] = size[m + 1 :].max()
+    return size
+
+
+def _system(
+    field: StaticField, path: ParameterPath, border: Array, z: Array
+) -> tuple[Array, Array]:
+    """Return residual (2m+1,) and Jacobian of the defining system."""
+    m = len(border)
+    x, value, v = z[:m], z[m], z[m + 1 :]
+    p, dp = path.vector(value), path.direction(value)
+    f_x = field.f_x(x, p)
+    J = np.zeros((2 * m + 1, 2 * m + 1))
+    J[:m, :m], J[:m, m] = f_x, field.f_p(x, p, dp)
+    J[m : 2 * m, :m] = field.f_xx(x, p, np.broadcast_to(v[:, None], (m, m)), np.eye(m)).real
+    J[m : 2 * m, m] = field.f_xp(x, p, v, dp).real
+    J[m : 2 * m, m + 1 :] = f_x
+    J[2 * m, m + 1 :] = border
+    return np.concatenate([field.f(x, p), f_x @ v, [border @ v - 1.0]]), J

@@ -64,7 +64,7 @@ class ExactForm:
 
     def curvature(self, k: int) -> float:
         """Change of the parameter over A^2, A the first harmonic of unknown k."""
-        return self.parameter_curvature / (4.0 * abs(self.q[k]) ** 2)
+        return float(self.parameter_curvature / (4.0 * abs(self.q[k]) ** 2))
 
 
 def exact_form(model: ExactModel, path: ParameterPath, hopf: ExactHopf) -> ExactForm:

@@ -47,7 +47,7 @@ def l1_series(order: float, step: float, count: int) -> Array:
     near = np.arange(1, min(count, _EXPANDED), dtype=float)
     before = np.where(near > 1.0, (near - 1.0) ** a, 0.0)
     differences = np.ones(count)
-    differences[1 : _EXPANDED] = (near + 1.0) ** a - 2.0 * near**a + before
+    differences[1:_EXPANDED] = (near + 1.0) ** a - 2.0 * near**a + before
     far = j[_EXPANDED:]
     even = np.arange(2, 16, 2)
     terms = binom(a, even) * far[:, None] ** (a - even)

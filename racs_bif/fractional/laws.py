@@ -100,9 +100,7 @@ class Law:
         return bool(np.all(exponents == np.round(exponents)))
 
 
-def read_numbers(
-    name: str, numbers: Array, sizes: tuple[int, int], *, feedthrough: bool
-) -> Law:
+def read_numbers(name: str, numbers: Array, sizes: tuple[int, int], *, feedthrough: bool) -> Law:
     """Arrange the numbers that a compiled model returns for one law.
 
     Parameters

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +20,9 @@ from racs_bif.fractional.powers import (
     from_zeros_and_poles,
     from_zeros_and_poles_slope,
 )
-from racs_bif.symbolic.field import Array
+
+if TYPE_CHECKING:
+    from racs_bif.symbolic.field import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from racs_bif.continuation.points import Point
 
 _NEAR: Final = 0.05
-_SEED: Final = 20240
 
 
 class BranchPointOfCycles(Detector):
@@ -24,25 +23,10 @@ class BranchPointOfCycles(Detector):
     crossings = 1
 
     def value(self, problem: OrbitProblem, point: Point) -> float:
-        """Return an estimate of its smallest singular value, with the sign of its determinant.
-
-        The matrix is scaled by the magnitudes of the unknowns. The estimate is |r| / |A^-1 r| for a
-        vector r that is always the same; it passes through zero linearly. The determinant keeps its
-        sign from mesh to mesh.
-        """
-        z = point.z
-        if problem.degenerate(z):
+        """Return `OrbitProblem.singularity`; not defined where the branch begins."""
+        if problem.degenerate(point.z):
             return math.nan
-        magnitudes = np.append(problem.scales(z), max(1.0, abs(z[-1])))
-        row = point.tangent / magnitudes
-        row /= np.linalg.norm(row)
-        matrix = np.concatenate((problem.jacobian(z) * magnitudes, row[None]))
-        sign = np.linalg.slogdet(matrix)[0]
-        if sign == 0.0:
-            return 0.0
-        right = np.random.default_rng(_SEED).standard_normal(len(z))
-        solution = np.linalg.solve(matrix, right)
-        return float(sign * np.linalg.norm(right) / np.linalg.norm(solution))
+        return problem.singularity(point.z, point.tangent)
 
     def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
         """Return period and multipliers; None unless a second multiplier is 1."""

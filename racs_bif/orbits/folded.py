@@ -48,6 +48,12 @@ class FoldedRing(Ring):
         self.folded = blocks
         super().__init__(blocks, np.broadcast_to(-np.eye(blocks.shape[-1]), blocks.shape))
 
+    def picked(self, points: Array) -> Array:
+        """Return those of the points (M, n) at which the products begin (M', n)."""
+        for _ in self._folds:
+            points = points[::2]
+        return points
+
     def reduce(self, rhs: Array) -> tuple[Array, list[Array]]:
         """Condense right-hand sides (M, n, k); see `Ring.reduce`."""
         kept = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from racs_bif.continuation.points import Point
     from racs_bif.orbits.floquet import Floquet
     from racs_bif.symbolic.field import Array, VectorField
+
+_SEED: Final = 20240
 
 
 class OrbitProblem(Problem):
@@ -55,6 +57,28 @@ class OrbitProblem(Problem):
     @abstractmethod
     def sample(self, z: Array, fractions: Array) -> Array:
         """Return the states (n, m) at fractions (m,) of the period."""
+
+    def magnitudes(self, z: Array) -> Array:
+        """Return the scales of the unknowns with that of the parameter."""
+        return np.append(self.scales(z), max(1.0, abs(z[-1])))
+
+    def singularity(self, z: Array, tangent: Array) -> float:
+        """Return how far [jacobian; tangent] is from singular, with the sign of its determinant.
+
+        The matrix is scaled by the magnitudes of the unknowns. The estimate of its smallest
+        singular value is |r| / |A^-1 r| for a vector r that is always the same; it passes through
+        zero linearly. The determinant keeps its sign from mesh to mesh.
+        """
+        magnitudes = self.magnitudes(z)
+        row = tangent / magnitudes
+        row /= np.linalg.norm(row)
+        matrix = np.concatenate((self.jacobian(z) * magnitudes, row[None]))
+        sign = np.linalg.slogdet(matrix)[0]
+        if sign == 0.0:
+            return 0.0
+        right = np.random.default_rng(_SEED).standard_normal(len(z))
+        solution = np.linalg.solve(matrix, right)
+        return float(sign * np.linalg.norm(right) / np.linalg.norm(solution))
 
     def orbit(self, z: Array, samples: int = 201) -> Orbit:
         """Return the orbit as a result, sampled at equal times over one period."""

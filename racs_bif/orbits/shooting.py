@@ -15,6 +15,7 @@ from racs_bif.orbits.assembly import TAIL, dense_jacobian, ring_solver
 from racs_bif.orbits.floquet import Floquet, floquet
 from racs_bif.orbits.flow import Derivative, Flow, Integrator
 from racs_bif.orbits.generations import Generations
+from racs_bif.orbits.polishing import direction, polished
 from racs_bif.orbits.problem import OrbitProblem
 from racs_bif.orbits.reference import Reference
 from racs_bif.orbits.remesh import better_mesh, interpolated
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 
 _SAME: Final = 1e-9
 """Relative distance below which the derivative of the flow is taken over."""
-_POLISHING: Final = 6
-"""Newton iterations on a new mesh."""
 _DENSE: Final = 128
 """Unknowns up to which a dense LU factorisation is faster than condensation (measured)."""
 
@@ -192,7 +191,7 @@ class ShootingProblem(OrbitProblem):
         """Return flow and derivative at `z`, or where they are known within rounding of it."""
         base = self._base
         if base is not None and base.flow.mesh is self.reference(z).mesh:
-            distance = np.abs(z - base.z) / self._magnitudes(z)
+            distance = np.abs(z - base.z) / self.magnitudes(z)
             distance[-2] = 0.0
             if float(distance.max()) < _SAME:
                 return base.flow, base.derivative
@@ -299,38 +298,14 @@ class ShootingProblem(OrbitProblem):
         reference = Reference(mesh, stages, velocities, self.reference(z).scales)
         number = self.generations.add(reference, starts, self.period(z), float(z[-1]))
         there = self.join(starts, self.period(z), float(z[-1]), number)
-        direction = self.join(directions, float(held[-3]), float(held[-1]))
+        moved = self.join(directions, float(held[-3]), float(held[-1]))
         if tangent is None:
-            direction[-1] = 1.0
-        return self._polished(there, direction), direction
-
-    def _polished(self, z: Array, tangent: Array) -> Array:
-        """Return the solution in the hyperplane through `z` with the normal `tangent`."""
-        magnitudes = self._magnitudes(z)
-        row = tangent / magnitudes**2
-        for _ in range(_POLISHING):
-            step = self.bordered(z, row)(np.append(self.residual(z), 0.0))
-            z = z - step
-            size = float(np.abs(step / magnitudes).max())
-            if size < _SAME:
-                return z
-            if not size < 1.0:
-                break
-        raise ConvergenceError("the orbit was not found again on another mesh")
+            moved[-1] = 1.0
+        return polished(self, there, moved), moved
 
     def tangent(self, z: Array, near: Array) -> Array:
         """Return the direction of the branch at `z`, as long as `near` in the problem's scales."""
-        magnitudes = self._magnitudes(z)
-        rhs = np.zeros(len(z))
-        rhs[-1] = 1.0
-        direction = self.bordered(z, near / magnitudes**2)(rhs)
-        if not np.all(np.isfinite(direction)):
-            raise ConvergenceError("the direction of the branch of orbits is not defined here")
-        length = np.linalg.norm(near / magnitudes) / np.linalg.norm(direction / magnitudes)
-        return np.asarray(direction * length)
-
-    def _magnitudes(self, z: Array) -> Array:
-        return np.append(self.scales(z), max(1.0, abs(z[-1])))
+        return direction(self, z, near)
 
     # ------------------------------------------------------------------ results
 

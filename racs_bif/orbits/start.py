@@ -58,7 +58,65 @@ def from_hopf(
     form: HopfForm | None = None,
     settings: OrbitSettings | None = None,
 ) -> Start:
-    """Start the branch of orbits that is born at a Hopf point.
+    """Start the branch of orbits that is born at a Hopf point; see `hopf_seed`."""
+    seed = hopf_seed(field, point, omega, q, form=form)
+    return shooting_from(seed, field, path, settings)
+
+
+def from_samples(
+    field: VectorField,
+    path: ParameterPath,
+    times: ArrayLike,
+    profile: ArrayLike,
+    value: float,
+    *,
+    settings: OrbitSettings | None = None,
+) -> Start:
+    """Start from an orbit known by samples; see `samples_seed`."""
+    return shooting_from(samples_seed(field, times, profile, value), field, path, settings)
+
+
+def shooting_from(
+    seed: Seed, field: VectorField, path: ParameterPath, settings: OrbitSettings | None = None
+) -> Start:
+    """Start a branch by shooting.
+
+    Parameters
+    ----------
+    seed : Seed
+        The first orbit.
+    field : VectorField
+        The right-hand side.
+    path : ParameterPath
+        Where the active parameter leads.
+    settings : OrbitSettings, optional
+        How orbits are resolved.
+    """
+    settings = settings or OrbitSettings()
+    mesh = Mesh.uniform(settings.steps, settings.segments)
+    times = mesh.times(ABSCISSAE)
+    reference = Reference(
+        mesh,
+        stages=seed.points(times),
+        velocities=seed.velocities(times),
+        scales=seed.scales,
+        degenerate=seed.direction is not None,
+    )
+    problem = ShootingProblem(field, path, reference, settings)
+    z = problem.join(seed.points(mesh.starts), seed.period, seed.value)
+    tangent = seed.direction and problem.join(seed.direction(mesh.starts), 0.0, 0.0)
+    return Start(problem, z, tangent)
+
+
+def hopf_seed(
+    field: VectorField,
+    point: ArrayLike,
+    omega: float,
+    q: NDArray[np.complex128],
+    *,
+    form: HopfForm | None = None,
+) -> Seed:
+    """Describe the branch of orbits that is born at a Hopf point.
 
     The first point is the equilibrium as an orbit of no amplitude and of period 2 pi / omega, and
     the branch leaves it along Re(q e^(i theta)), with period and parameter unchanged to first
@@ -100,64 +158,27 @@ def from_hopf(
             f"a Hopf point of {len(field.states)} states needs as many components of the "
             f"equilibrium and of q, not {len(state)} and {len(q)}"
         )
-    settings = settings or OrbitSettings()
-    mesh = Mesh.uniform(settings.steps, settings.segments)
     amplitude = _amplitude(state, float(value[0]), q, form)
     moving = np.maximum(np.abs(q), _STILL * np.abs(q).max())
-    scales = 4.0 * amplitude * moving  # the range of 2 a Re(q e^(i theta))
-    turns = np.exp(2j * np.pi * mesh.times(ABSCISSAE))[:, :, None]
-    reference = Reference(
-        mesh,
-        stages=np.tile(state, (mesh.steps, len(ABSCISSAE), 1)),
-        velocities=2.0 * amplitude * (2j * np.pi * q * turns).real,
-        scales=scales,
-        degenerate=True,
+
+    def mode(times: Array, times_slope: int) -> Array:
+        turned = q * np.exp(2j * np.pi * times)[..., None]
+        return 2.0 * amplitude * np.asarray(((2j * np.pi) ** times_slope * turned).real)
+
+    return Seed(
+        period=2.0 * np.pi / omega,
+        value=float(value[0]),
+        scales=4.0 * amplitude * moving,  # the range of 2 a Re(q e^(i theta))
+        points=lambda times: np.broadcast_to(state, (*times.shape, len(state))),
+        velocities=lambda times: mode(times, 1),
+        direction=lambda times: mode(times, 0),
     )
-    problem = ShootingProblem(field, path, reference, settings)
-    starts = np.exp(2j * np.pi * mesh.starts)[:, None]
-    z = problem.join(np.tile(state, mesh.segments), 2.0 * np.pi / omega, float(value[0]))
-    tangent = problem.join(2.0 * amplitude * (q * starts).real, 0.0, 0.0)
-    return Start(problem, z, tangent)
 
 
-def hopf_orbit(start: Start, amplitude: float, omega: float, form: HopfForm) -> Array:
-    """Predict a small orbit near a Hopf point to second order.
-
-    Parameters
-    ----------
-    start : Start
-        From `from_hopf`.
-    amplitude : float
-        |w| of the normal form: the orbit is 2 |w| Re(q e^(i theta)) to first order.
-    omega : float
-        Frequency at the Hopf point.
-    form : HopfForm
-        Its normal form.
-
-    Returns
-    -------
-    array (M n + 3,)
-        Unknowns, for Newton's method to correct.
-    """
-    mesh = start.problem.reference(start.z).mesh
-    w = amplitude * np.exp(2j * np.pi * mesh.starts)[:, None]
-    shift = form.parameter_curvature * amplitude**2
-    equilibrium = start.z[: len(form.q)] + form.h11 * amplitude**2 + form.drift * shift
-    starts = equilibrium + (2.0 * w * form.q + w**2 * form.h20).real
-    frequency = omega + form.frequency_curvature * amplitude**2
-    return start.problem.join(starts, 2.0 * np.pi / frequency, float(start.z[-1]) + shift)
-
-
-def from_samples(
-    field: VectorField,
-    path: ParameterPath,
-    times: ArrayLike,
-    profile: ArrayLike,
-    value: float,
-    *,
-    settings: OrbitSettings | None = None,
-) -> Start:
-    """Start from an orbit known by samples: a simulation's tail, another method, a saved orbit.
+def samples_seed(
+    field: VectorField, times: ArrayLike, profile: ArrayLike, value: float
+) -> Seed:
+    """Describe an orbit known by samples: a simulation's tail, another method, a saved orbit.
 
     Parameters
     ----------
@@ -197,18 +218,45 @@ def from_samples(
     ranges = np.ptp(x, axis=1)
     if ranges.max() == 0.0:
         raise UsageError("the samples do not move: this is an equilibrium, not an orbit")
-    settings = settings or OrbitSettings()
     s = (t - t[0]) / (t[-1] - t[0])
     closed = x - np.outer(x[:, -1] - x[:, 0], s)
     closed[:, -1] = closed[:, 0]
     spline = CubicSpline(s, closed.T, bc_type="periodic")
-    mesh = Mesh.uniform(settings.steps, settings.segments)
-    points = mesh.times(ABSCISSAE)
-    scales = np.maximum(ranges, _STILL * np.maximum(np.abs(x).max(axis=1), ranges.max()))
-    reference = Reference(mesh, spline(points), spline(points, 1), scales)
-    problem = ShootingProblem(field, path, reference, settings)
-    z = problem.join(spline(mesh.starts), float(t[-1] - t[0]), value)
-    return Start(problem, z, None)
+    return Seed(
+        period=float(t[-1] - t[0]),
+        value=value,
+        scales=np.maximum(ranges, _STILL * np.maximum(np.abs(x).max(axis=1), ranges.max())),
+        points=spline,
+        velocities=lambda times: np.asarray(spline(times, 1)),
+    )
+
+
+def hopf_orbit(start: Start, amplitude: float, omega: float, form: HopfForm) -> Array:
+    """Predict a small orbit near a Hopf point to second order.
+
+    Parameters
+    ----------
+    start : Start
+        From `from_hopf`.
+    amplitude : float
+        |w| of the normal form: the orbit is 2 |w| Re(q e^(i theta)) to first order.
+    omega : float
+        Frequency at the Hopf point.
+    form : HopfForm
+        Its normal form.
+
+    Returns
+    -------
+    array (M n + 3,)
+        Unknowns, for Newton's method to correct.
+    """
+    mesh = start.problem.reference(start.z).mesh
+    w = amplitude * np.exp(2j * np.pi * mesh.starts)[:, None]
+    shift = form.parameter_curvature * amplitude**2
+    equilibrium = start.z[: len(form.q)] + form.h11 * amplitude**2 + form.drift * shift
+    starts = equilibrium + (2.0 * w * form.q + w**2 * form.h20).real
+    frequency = omega + form.frequency_curvature * amplitude**2
+    return start.problem.join(starts, 2.0 * np.pi / frequency, float(start.z[-1]) + shift)
 
 
 def _amplitude(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.plots.style import BLACK, SIZE, VERMILION, style
+from racs_bif.plots.style import SIZE, VERMILION, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,10 +62,10 @@ def _draw(spectrum: Spectrum, ax: Axes) -> None:
     ax.axvspan(0.0, right, color="0.93", lw=0)
     ax.axvline(0.0, color="0.6", lw=0.6)
     ax.axhline(0.0, color="0.6", lw=0.6)
-    ax.plot(roots.real, roots.imag, "o", ms=5.0, mfc="none", mec=BLACK, mew=0.9, label="exact roots")
+    ax.plot(roots.real, roots.imag, "ko", ms=5.0, mfc="none", mew=0.9, label="exact roots")
     cut = np.asarray(spectrum.roots.on_cut, dtype=complex)
     if len(cut):
-        ax.plot(cut.real, cut.imag, "s", ms=4.0, mfc="none", mec=BLACK, label="on the branch cut")
+        ax.plot(cut.real, cut.imag, "ks", ms=4.0, mfc="none", label="on the branch cut")
     values = spectrum.eigenvalues
     ax.plot(values.real, values.imag, "x", ms=3.5, mec=VERMILION, mew=0.9, label="realisation")
     ax.set_xlim(low - 0.05 * width, right)

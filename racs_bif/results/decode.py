@@ -43,7 +43,7 @@ def decode_branch(node: Node) -> Branch:
         stopped=str(node.attributes["stopped"]),
         early=bool(node.attributes["early"]),
         connected=bool(node.attributes["connected"]),
-        system=_decode_system(node.groups["system"]),
+        system=decode_system(node.groups["system"]),
         state_names=state_names,
         states=states,
         measures=dict(zip(measure_names, np.ascontiguousarray(measures.T), strict=True)),
@@ -53,7 +53,8 @@ def decode_branch(node: Node) -> Branch:
     )
 
 
-def _decode_system(node: Node) -> SystemInfo:
+def decode_system(node: Node) -> SystemInfo:
+    """Return the system that `encode.encode_system` made a tree of."""
     text = {key: str(node.attributes[key]) for key in ("model", "title", "variant", "version")}
     realisation = None
     if "realisation" in node.groups:

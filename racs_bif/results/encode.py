@@ -62,7 +62,7 @@ def encode_branch(branch: Branch) -> Node:
     columns += [("state", name, branch.states[:, k]) for k, name in enumerate(branch.state_names)]
     columns += [("measure", name, column) for name, column in branch.measures.items()]
     _add_columns(node, columns, branch.system)
-    node.groups["system"] = _encode_system(branch.system)
+    node.groups["system"] = encode_system(branch.system)
     special = {point.name: _encode_special(point) for point in branch.special}
     if special:
         names = tuple(special)
@@ -73,7 +73,8 @@ def encode_branch(branch: Branch) -> Node:
     return node
 
 
-def _encode_system(system: SystemInfo) -> Node:
+def encode_system(system: SystemInfo) -> Node:
+    """Return a system as a tree that `decode.decode_system` turns back into the same."""
     node = Node(
         attributes={
             "model": system.model,

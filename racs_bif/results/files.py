@@ -6,7 +6,7 @@ A file has a group for each branch, which opens in xarray::
 
 with the parameters, states and measures as variables that know their units, eigenvalues or
 multipliers with a trailing dimension ``re_im``, and beneath it groups with the system, the special
-points and the profiles of orbits.
+points and the profiles of orbits. A time history has the one group ``history``.
 """
 
 from __future__ import annotations
@@ -19,21 +19,23 @@ from racs_bif.results.branch import Branch
 from racs_bif.results.decode import decode_branch
 from racs_bif.results.diagram import Diagram
 from racs_bif.results.encode import encode_branch
-from racs_bif.results.tree import Node, fingerprint, read_tree, words, write_tree
+from racs_bif.results.history import TimeHistory
+from racs_bif.results.history_tree import GROUP, decode_history, encode_history
+from racs_bif.results.tree import Attribute, Node, fingerprint, read_tree, words, write_tree
 
 FORMAT = 1
 """Version of the layout; a reader refuses a newer one."""
 _CHECKSUM = "sha256"
 
 
-def save(result: Branch | Diagram, path: str | Path) -> Path:
-    """Save a branch or a diagram as a netCDF-4 file.
+def save(result: Branch | Diagram | TimeHistory, path: str | Path) -> Path:
+    """Save a branch, a diagram or a time history as a netCDF-4 file.
 
     The file appears whole or not at all.
 
     Parameters
     ----------
-    result : Branch or Diagram
+    result : Branch, Diagram or TimeHistory
         What to save.
     path : str or Path
         Where; an existing file is replaced.
@@ -49,23 +51,13 @@ def save(result: Branch | Diagram, path: str | Path) -> Path:
         If it cannot be written there.
     """
     path = Path(path)
-    branches = (result,) if isinstance(result, Branch) else result.branches
-    node = Node(
-        attributes={
-            "Conventions": "CF-1.11",
-            "source": f"racs_bif {branches[0].system.version}".strip(),
-            "format": FORMAT,
-            "content": "branch" if isinstance(result, Branch) else "diagram",
-            "branches": tuple(branch.name for branch in branches),
-        },
-        groups={branch.name: encode_branch(branch) for branch in branches},
-    )
+    node = _encode_history(result) if isinstance(result, TimeHistory) else _encode_branches(result)
     node.attributes[_CHECKSUM] = fingerprint(node)
     write_atomically(path, lambda part: write_tree(part, node))
     return path
 
 
-def load(path: str | Path) -> Branch | Diagram:
+def load(path: str | Path) -> Branch | Diagram | TimeHistory:
     """Load what `save` saved, bit for bit.
 
     Raises
@@ -90,8 +82,34 @@ def load(path: str | Path) -> Branch | Diagram:
     if checksum != fingerprint(node):
         msg = f"'{path}' was changed after it was saved: its checksum is wrong; compute it again"
         raise FileError(msg)
+    if node.attributes["content"] == GROUP:
+        return decode_history(node.groups[GROUP])
     branches = [decode_branch(node.groups[n]) for n in words(node.attributes["branches"])]
     return branches[0] if node.attributes["content"] == "branch" else Diagram(*branches)
+
+
+def _encode_branches(result: Branch | Diagram) -> Node:
+    branches = (result,) if isinstance(result, Branch) else result.branches
+    node = Node(
+        attributes=_about(branches[0].system.version),
+        groups={branch.name: encode_branch(branch) for branch in branches},
+    )
+    node.attributes["content"] = "branch" if isinstance(result, Branch) else "diagram"
+    node.attributes["branches"] = tuple(branch.name for branch in branches)
+    return node
+
+
+def _encode_history(history: TimeHistory) -> Node:
+    attributes = _about(history.system.version) | {"content": GROUP}
+    return Node(attributes=attributes, groups={GROUP: encode_history(history)})
+
+
+def _about(version: str) -> dict[str, Attribute]:
+    return {
+        "Conventions": "CF-1.11",
+        "source": f"racs_bif {version}".strip(),
+        "format": FORMAT,
+    }
 
 
 def _read(path: Path) -> Node:

@@ -86,7 +86,9 @@ class TimeHistory:
         if {len(column) for column in columns} != {len(self.times)} or self.states.shape[1:] != (
             len(self.state_names),
         ):
-            msg = f"a time history of {len(self.times)} samples: columns of another length or number"
+            msg = (
+                f"a time history of {len(self.times)} samples: columns of another length or number"
+            )
             raise ValueError(msg)
 
     def __len__(self) -> int:

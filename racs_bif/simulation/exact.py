@@ -89,7 +89,9 @@ class ExactStepper:
         self.laws = system.exact.laws(system.values)
         self.memory: Memory = METHODS[method](self.laws, self.step, count, tolerance)
         self._jumps = set(inputs.jump_times)
-        self._diagonal = np.concatenate([np.full(self.ny, BDF2[0] / self.step), np.ones(len(start.w))])
+        self._diagonal = np.concatenate(
+            [np.full(self.ny, BDF2[0] / self.step), np.ones(len(start.w))]
+        )
         self._gains = np.concatenate([np.ones(self.ny), self.memory.gain])
         self._scale = np.abs(start.X)
 
@@ -181,7 +183,9 @@ class ExactStepper:
         """Return the elements' outputs just after t = 0, NaN where they are infinite."""
         P, ny = self.compiled.padded(self.inputs.values(0.0)), self.ny
         X = self.start.X
-        gains = [_sudden_gain(law.numerator.exponents, law.denominator.exponents) for law in self.laws]
+        gains = [
+            _sudden_gain(law.numerator.exponents, law.denominator.exponents) for law in self.laws
+        ]
         last = [
             law.numerator.coefficients[law.numerator.exponents.argmax()]
             / law.denominator.coefficients[law.denominator.exponents.argmax()]

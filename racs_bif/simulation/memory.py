@@ -134,9 +134,7 @@ class ExponentialMemory(Memory):
 
 
 def _full(laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> Memory:  # noqa: ARG001
-    return FullMemory(
-        _rows([quadrature_weights(law, step, count + 1) for law in laws], count + 1)
-    )
+    return FullMemory(_rows([quadrature_weights(law, step, count + 1) for law in laws], count + 1))
 
 
 def _l1(laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> Memory:  # noqa: ARG001

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from racs_bif.errors import ModelError
 from racs_bif.symbolic import cache
 from racs_bif.symbolic.generate import Sources, generate
 from racs_bif.symbolic.jets import Algebra, Coefficients, JetFunctions
@@ -197,6 +198,15 @@ def compile_model(model: Model) -> CompiledModel:
     ModelError
         If the model cannot be compiled; see `racs_bif.symbolic.generate.generate`.
     """
+    try:
+        return CompiledModel(_sources(model))
+    except RecursionError:
+        msg = f"model '{model.name}': an expression is nested too deeply; split it"
+        raise ModelError(msg) from None
+
+
+def _sources(model: Model) -> Sources:
+    """Return the compiled texts of a model, from the cache if they are there."""
     import sympy as sp
 
     expressions = [*model.equations.values(), *model.outputs.values()]
@@ -210,7 +220,7 @@ def compile_model(model: Model) -> CompiledModel:
     if sources is None:
         sources = generate(model)
         write_sources(key, sources)
-    return CompiledModel(sources)
+    return sources
 
 
 def read_sources(key: str) -> Sources | None:

@@ -56,9 +56,7 @@ def emit(graph: Graph, function: Function, parameters: Sequence[int]) -> list[st
     fixed = _fixed(graph, nodes, parameters)
     users = Counter(a for n in nodes if n not in fixed for a in set(graph.ops[n][1]))
     users.update(function.outputs)
-    hoisted = [
-        n for n in nodes if n in fixed and users[n] and graph.ops[n][0] != "const"
-    ]
+    hoisted = [n for n in nodes if n in fixed and users[n] and graph.ops[n][0] != "const"]
     names = {n: f"c{k}" for k, n in enumerate(hoisted)}
     lines = [f"def {function.name}_prepare(p):"]
     lines += _unpack({"p": parameters}, set(nodes), {})

@@ -35,9 +35,7 @@ def tangent(graph: Graph, outputs: Sequence[int], seeds: Mapping[int, int]) -> l
         name, args, _ = graph.ops[node]
         if name == "input":
             dots[node] = seeds.get(node, graph.zero)
-        elif all(dots[a] == graph.zero for a in args) or (
-            name in COMPARISONS or name in LOGIC
-        ):
+        elif all(dots[a] == graph.zero for a in args) or (name in COMPARISONS or name in LOGIC):
             dots[node] = graph.zero
         else:
             dots[node] = _RULES[name](graph, node, args, [dots[a] for a in args])

@@ -170,9 +170,6 @@ def _base(number: Number) -> float:
     return number.base if isinstance(number, Jet) else number
 
 
-
-
-
 def _elementary(name: str) -> Callable[[Number], Number]:
     series, plain = ELEMENTARY[name], getattr(SCALAR, name)
 

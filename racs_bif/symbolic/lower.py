@@ -54,6 +54,12 @@ class Lowering:
         self._fixed = set(fixed)
         self._done: dict[sp.Basic, int] = {}
 
+    def is_fixed(self, node: int) -> bool:
+        """Say whether a node depends on parameters only."""
+        ops = self.graph.ops
+        inputs = (n for n in self.graph.reachable([node]) if ops[n][0] == "input")
+        return all(n in self._fixed for n in inputs)
+
     def __call__(self, expression: sp.Basic) -> int:
         """Return the node of an expression."""
         node = self._done.get(expression)

@@ -117,7 +117,7 @@ class _Search:
 def _scale(states: Sequence[Array]) -> Array:
     """Return a typical size of each unknown, none smaller than a hundredth of the largest."""
     size = np.max(np.abs(np.array(states)), axis=0)
-    return np.maximum(size, 1e-2 * max(float(size.max()), 1e-6))
+    return np.asarray(np.maximum(size, 1e-2 * max(float(size.max()), 1e-6)))
 
 
 @single_threaded

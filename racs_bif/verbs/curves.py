@@ -116,6 +116,13 @@ def continue_curve(
 
 
 def origin_of(point: SpecialPoint) -> Origin:
+    """Return where a point came from.
+
+    Raises
+    ------
+    UsageError
+        If it was loaded from a file, where that is not kept.
+    """
     if not isinstance(point.origin, Origin):
         msg = (
             f"{point.name} was loaded from a file; compute its branch again to start a curve there"

@@ -132,9 +132,7 @@ def follow(
     )
 
 
-def check_span(
-    system: System, parameter: str, span: tuple[float, float]
-) -> tuple[float, float]:
+def check_span(system: System, parameter: str, span: tuple[float, float]) -> tuple[float, float]:
     """Return the span as floats.
 
     Raises
@@ -160,7 +158,7 @@ def check_span(
 
 
 def outputs_of(system: System) -> Callable[[Array, Array], dict[str, float]]:
-    """Return the function of states (n,) and base parameters (np,) that gives a system's outputs."""
+    """Return the outputs of a system as a function of states (n,) and base parameters (np,)."""
 
     def outputs(x: Array, p: Array) -> dict[str, float]:
         frame = system.field.frame(p)

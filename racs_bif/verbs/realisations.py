@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from racs_bif.fractional.filter import Realisation
+    from racs_bif.fractional.laws import Complex
     from racs_bif.fractional.system import System
     from racs_bif.results.special import SpecialPoint
     from racs_bif.symbolic.model import Model
@@ -111,7 +112,7 @@ def compare_realisations(
 def _errors(
     system: System, realisation: Realisation, frequencies: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    s = 1j * frequencies
+    s: Complex = np.asarray(1j * frequencies, dtype=np.complex128)
     laws = system.field.laws(system.values)
     each = [np.abs(realisation.realise(law)(s) / law(s) - 1.0) for law in laws]
     worst: NDArray[np.float64] = np.max(each, axis=0)

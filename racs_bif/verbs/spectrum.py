@@ -50,8 +50,8 @@ class Spectrum:
         apart = np.abs(self.roots.roots[:, None] - self.eigenvalues[None, :])
         if not apart.size:
             return np.zeros(len(self.roots.roots))
-        nearest = np.asarray(apart.min(axis=1) / np.maximum(np.abs(self.roots.roots), 1e-300))
-        return nearest
+        sizes = np.maximum(np.abs(self.roots.roots), 1e-300)
+        return np.asarray(apart.min(axis=1) / sizes)
 
 
 @single_threaded

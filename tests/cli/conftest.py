@@ -78,7 +78,9 @@ def computed(monkeypatch, known):
     equilibria = SimpleNamespace(
         all_equilibria=lambda *a, **k: Diagram(calls.equilibria(*a, **k)),
     )
-    orbits = SimpleNamespace(continue_orbits=lambda *a, **k: calls.orbits(*a, **k))
+    orbits = SimpleNamespace(
+        continue_orbits=lambda *a, **k: calls.orbits(*a, **k),  # noqa: PLW0108 - a test may change it
+    )
     monkeypatch.setitem(sys.modules, "racs_bif.verbs.all_equilibria", equilibria)
     monkeypatch.setitem(sys.modules, "racs_bif.verbs.orbits", orbits)
     return calls

@@ -29,9 +29,9 @@ def disguise():
             turn[k, k], turn[k, k + 1], turn[k + 1, k], turn[k + 1, k + 1] = c, -s, s, c
             rotation = rotation * turn
         L = scale * rotation
-        # u_k = y_k + bend * (terms in earlier y only): triangular, so that its inverse is a polynomial.
+        # u_k = y_k + bend * (terms in earlier y only): triangular, with a Jacobian of determinant 1.
         y = L.inv() * sp.Matrix(new)
-        u, change = [], sp.eye(count)
+        u = []
         for k in range(count):
             bent = sum(bend * y[j] ** 2 * (1 + (j + k) / 7) for j in range(k))
             bent += sum(bend / 2 * y[j] * y[i] ** 2 for j in range(k) for i in range(j + 1))

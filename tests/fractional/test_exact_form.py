@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 import racs_bif as rb
 from racs_bif.equilibria.hopf_form import hopf_form
 from racs_bif.fractional.diffusive import Diffusive

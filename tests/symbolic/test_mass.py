@@ -121,3 +121,53 @@ def test_mass_and_element_together():
     compiled = compile_model(model)
     value = compiled.core(np.array([2.0, 3.0, 5.0]), np.array([4.0, 7.0]))
     np.testing.assert_allclose(value, [3.0, -(5.0 + 7.0 * 2.0) / 4.0, 2.0], rtol=1e-15)
+
+
+@pytest.mark.parametrize("at", [0.0, np.pi / 2, np.pi / 2 - 1e-9, 1.0, np.pi, 4.0])
+def test_pivots_that_vanish_away_from_the_guess(at):
+    """A rotation is never singular, but either pivot of it vanishes somewhere."""
+    x, y = sp.symbols("x y")
+    mass = sp.Matrix([[sp.cos(x), sp.sin(x)], [-sp.sin(x), sp.cos(x)]])
+    compiled = compile_model(Model("turning", {"x": x + y, "y": x - y}, mass=mass))
+    point, none = np.array([at, 0.5]), np.array([])
+
+    def exact(p):
+        c, s = np.cos(p[0]), np.sin(p[0])
+        return np.array([[c, -s], [s, c]]) @ np.array([p[0] + p[1], p[0] - p[1]])
+
+    np.testing.assert_allclose(compiled.core(point, none), exact(point), atol=1e-14)
+    many = compiled.core(np.column_stack([point, np.zeros(2)]), none)
+    np.testing.assert_allclose(many[:, 0], exact(point), atol=1e-14)
+    by_x = np.column_stack([exact(point + 1e-30j * e).imag / 1e-30 for e in np.eye(2)])
+    np.testing.assert_allclose(compiled.core_jacobian(point, none), by_x, atol=1e-13)
+
+
+@pytest.mark.parametrize("a", [3.0, 1.0, 1.0 + 1e-14, 0.0, -1.0])
+def test_pivots_that_vanish_at_other_parameters(a):
+    x, y, s = sp.symbols("x y a")
+    mass = sp.Matrix([[s - 1, 1], [1, s]])
+    compiled = compile_model(
+        Model("masses", {"x": sp.sin(x), "y": y}, (Parameter("a", 3.0),), mass=mass)
+    )
+    point, p = np.array([0.4, 0.5]), np.array([a])
+    M = np.array([[a - 1.0, 1.0], [1.0, a]])
+    np.testing.assert_allclose(
+        compiled.core(point, p), np.linalg.solve(M, [np.sin(0.4), 0.5]), rtol=1e-12
+    )
+    by_a = -np.linalg.solve(M, np.linalg.solve(M, [np.sin(0.4), 0.5]))
+    np.testing.assert_allclose(compiled.core_p(point, p, np.ones(1)), by_a, rtol=1e-12)
+
+
+def test_a_mass_of_parameters_is_inverted_once():
+    """No division is left for every evaluation."""
+    import re
+
+    x, y, a = sp.symbols("x y a")
+    mass = sp.Matrix([[a, 1], [2, a**2]])
+    model = Model("masses", {"x": sp.sin(x), "y": y}, (Parameter("a", 3.0),), mass=mass)
+    text = compile_model(model).sources.main
+    pattern = r"core_prepare\(p\):(.*?)def core\(c, x\):(.*?)def "
+    prepare, body = re.search(pattern, text, re.DOTALL).groups()
+    assert "/" in prepare
+    assert "/" not in body
+    assert "where" not in body

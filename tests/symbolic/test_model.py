@@ -146,6 +146,14 @@ def test_not_compiled(case):
         assert word in message
 
 
+def test_nested_too_deeply():
+    nest = x
+    for _ in range(400):
+        nest = sp.sin(nest, evaluate=False)
+    with pytest.raises(ModelError, match="model 'toy': .* nested too deeply"):
+        compile_model(build(equations={"x": nest}))
+
+
 def test_elements_in_series_are_no_loop():
     """An element may feed another, in any order of writing."""
     elements = (

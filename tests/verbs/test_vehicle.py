@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
 
 import racs_bif as rb
 from racs_bif.errors import ParameterError, UsageError
-from racs_bif.results.branch import Branch
+
+if TYPE_CHECKING:
+    from racs_bif.results.branch import Branch
 
 HOPF_SPEEDS = {
     "C_s 20000": ({"C_s": 2e4}, 4.5672697, 10.414023),
