@@ -16,10 +16,6 @@ from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from racs_bif.equilibria.calibrate import calibrate
-    from racs_bif.verbs.all_equilibria import all_equilibria
-    from racs_bif.verbs.equilibria import continue_equilibria
-    from racs_bif.verbs.orbits import continue_orbits
-    from racs_bif.verbs.spectrum import spectrum
     from racs_bif.results.branch import Branch
     from racs_bif.results.diagram import Diagram
     from racs_bif.results.files import load, save
@@ -33,7 +29,12 @@ if TYPE_CHECKING:
         Parameter,
     )
     from racs_bif.symbolic.strings import model_from_strings
+    from racs_bif.verbs.all_equilibria import all_equilibria
+    from racs_bif.verbs.curves import continue_curve
+    from racs_bif.verbs.equilibria import continue_equilibria
+    from racs_bif.verbs.orbits import continue_orbits
     from racs_bif.verbs.simulate import simulate
+    from racs_bif.verbs.spectrum import spectrum
 
 __version__ = "0.1.0.dev0"
 
@@ -49,6 +50,7 @@ _HOMES: Final = {
     "TimeHistory": "racs_bif.results.history",
     "calibrate": "racs_bif.equilibria.calibrate",
     "all_equilibria": "racs_bif.verbs.all_equilibria",
+    "continue_curve": "racs_bif.verbs.curves",
     "continue_equilibria": "racs_bif.verbs.equilibria",
     "continue_orbits": "racs_bif.verbs.orbits",
     "load": "racs_bif.results.files",
@@ -70,6 +72,7 @@ __all__ = [
     "TimeHistory",
     "all_equilibria",
     "calibrate",
+    "continue_curve",
     "continue_equilibria",
     "continue_orbits",
     "load",

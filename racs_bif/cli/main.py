@@ -11,7 +11,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Final
 
-from racs_bif.cli import calibrate, continue_, models, simulate, realisations, spectrum
+from racs_bif.cli import calibrate, continue_, curve, models, realisations, simulate, spectrum
 from racs_bif.cli.parser import Parser
 from racs_bif.errors import ConvergenceError, RacsBifError, UsageError, nearest
 
@@ -25,6 +25,7 @@ WRONG: Final = 2
 VERBS: Final[dict[str, ModuleType]] = {
     "continue": continue_,
     "simulate": simulate,
+    "curve": curve,
     "calibrate": calibrate,
     "models": models,
     "spectrum": spectrum,

@@ -1,4 +1,4 @@
-"""``racs-bif simulate``: one time history, of the exact fractional operator or of its realisation."""
+"""``racs-bif simulate``: one time history of the exact fractional operator or its realisation."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 HELP: Final = "one time history, with the exact fractional operator or its realisation"
 DESCRIPTION: Final = (
-    "Integrate a model in time. The exact fractional operator remembers its whole past; the realised "
-    "one is an ordinary differential equation. Writes history.nc, history.png, history.svg and "
-    "summary.json."
+    "Integrate a model in time. The exact fractional operator remembers its whole past; the "
+    "realised one is an ordinary differential equation. Writes history.nc, history.png, "
+    "history.svg and summary.json."
 )
 FILES: Final = ("history.nc", "history.png", "history.svg", "summary.json")
 DEFAULT_OUT: Final = "racs_bif_out"
@@ -94,8 +94,8 @@ def configure(parser: Parser) -> None:
         "--tolerance",
         type=number,
         metavar="TOL",
-        help="without --step, error relative to every state's range, default 1e-3; of a step of the "
-        "realised model, default 1e-8",
+        help="without --step, error relative to every state's range, default 1e-3; of a step of "
+        "the realised model, default 1e-8",
     )
     parser.add_argument(
         "--extrapolate",

@@ -101,7 +101,7 @@ def hopf_form(
         h11=third.h11,
         c1=third.c1,
         mu_slope=complex(np.vdot(adjoint, moved)),
-        drift=drift,
+        drift=np.asarray(drift, dtype=float),
     )
 
 

@@ -97,13 +97,14 @@ def exponential_sum(
     if not _SHARPEST <= tolerance <= 0.1:
         msg = f"memory tolerance {tolerance:g} is not usable; give one between 1e-14 and 0.1"
         raise UsageError(msg)
-    digits = math.log(100.0 / tolerance)
+    digits = math.log(10.0 / tolerance)
     near = math.ceil((digits + 2.0) / _EDGE)
     exponents = np.concatenate([row.exponents for row in powers]) if powers else np.ones(1)
     broken = exponents[exponents != np.round(exponents)]
-    lowest = float(broken.min()) if len(broken) else 1.0
+    lowest, highest = (float(broken.min()), float(broken.max())) if len(broken) else (1.0, 1.0)
     first = -digits / (1.0 + lowest) - math.log(max(count, near))
     last = math.log(_EDGE)
-    spacing = math.pi**2 / (digits + 2.0)
+    # The rule's error is |Gamma(1 + q + 2 pi i / spacing)| / Gamma(1 + q), doubled.
+    spacing = math.pi**2 / (digits + (highest + 0.5) * math.log(digits))
     places = last - spacing * np.arange(math.ceil((last - first) / spacing) + 1)
     return ExponentialSum(step, near, np.exp(places), spacing)

@@ -58,7 +58,7 @@ def l1_series(order: float, step: float, count: int) -> Array:
 def l1_order(law: Law) -> float:
     """Return the scheme's order of convergence for a law."""
     growth = float(law.numerator.exponents.max() - law.denominator.exponents.max())
-    return 2.0 - growth if 0.0 < growth else 2.0
+    return 2.0 - growth if growth > 0.0 else 2.0
 
 
 def l1_weights(law: Law, step: float, count: int) -> Array:

@@ -181,7 +181,7 @@ class CollocationProblem(OrbitProblem):
         stages = np.zeros((2, *shape))
         stages[0] = reference.weights * reference.scales
         corner = np.array([[0.0, 0.0], [row[-3], row[-1]]])
-        return BorderedIntervals(self._near(z), nodes, stages, corner)
+        return BorderedIntervals(self.linearised(z), nodes, stages, corner)
 
     def singularity(self, z: Array, tangent: Array) -> float:
         """Return how far [jacobian; tangent] is from singular; see `OrbitProblem`."""
@@ -204,7 +204,7 @@ class CollocationProblem(OrbitProblem):
             self._found = (np.array(z), at)
         return self._found[1]
 
-    def _near(self, z: Array) -> Linearised:
+    def linearised(self, z: Array) -> Linearised:
         """Return the linearised equations at `z`, or where they are known within rounding of it."""
         if self._base is not None:
             known, linearised = self._base
@@ -248,7 +248,7 @@ class CollocationProblem(OrbitProblem):
         """Return the multipliers, from the transition matrices of the intervals."""
         if self._floquet is None or not np.array_equal(self._floquet[0], z):
             scales = self.reference(z).scales
-            folded = FoldedRing(self._near(z).transitions, GROWTH, _FOLDED)
+            folded = FoldedRing(self.linearised(z).transitions, GROWTH, _FOLDED)
             starts = folded.picked(self.nodes(z)[:, 0])
             velocities = self.equations.rates(starts, float(z[-1])) / scales
             self._floquet = (np.array(z), floquet(folded.folded, velocities))

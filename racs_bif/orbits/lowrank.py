@@ -165,9 +165,9 @@ class LowRankStages(Stages):
         starts = g.left @ g.row_sums.astype(complex)
         ends = g.end.astype(complex) @ g.right
         growth = g.end_start + (starts * ends) @ self._resolvent  # (N, K)
-        constant = _real(growth[:, None, :] * basis.vectors) @ _out(basis.inverse.T)
+        constant = _real(growth[:, None, :] * basis.vectors) @ _out(basis.inverse)
         sees = (g.right * starts) @ self._resolvent  # (N, m, K)
-        seen = _real(sees[:, :, None] * self._seen) @ _out(basis.inverse.T)
+        seen = _real(sees[:, :, None] * self._seen) @ _out(basis.inverse)
         adds = (g.left.T * ends) @ self._resolvent
         added = _real(adds[:, :, None] * self._added.T) @ _out(basis.vectors.T)
         size = constant.shape[-1]

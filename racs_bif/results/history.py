@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from racs_bif.errors import UsageError, nearest
-from racs_bif.results.provenance import SystemInfo
 from racs_bif.results.same import same
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+
+    from racs_bif.results.provenance import SystemInfo
 
 Reals = NDArray[np.float64]
 

@@ -33,8 +33,8 @@ def summarise_history(
     -------
     dict
         ``schema, version, command, model, variant, parameters, units, realisation, notes`` as for a
-        diagram, and ``simulation``: how it was computed; ``columns``: for each its unit, last value,
-        estimated error, and over the second half of the time its range and mean period.
+        diagram, and ``simulation``: how it was computed; ``columns``: for each its unit, last
+        value, estimated error, and over the second half of the time its range and mean period.
     """
     system = history.system
     how = system.realisation

@@ -119,6 +119,17 @@ def to_text(summary: Mapping[str, Json]) -> str:
     return json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
+def curve_points(curve: Branch) -> list[Json]:
+    """Return the points of a curve in two parameters: where, frequency, l1 and other measures."""
+    names = [name for name in ("omega", "l1", "neutral") if name in curve.measures]
+    points: list[Json] = []
+    for k, label in enumerate(curve.labels):
+        point: dict[str, object] = {"parameters": _parameters(curve, k)}
+        point |= {name: float(curve.measures[name][k]) for name in names}
+        points.append(to_json(point | {"label": label}))
+    return points
+
+
 def write_summary(summary: Mapping[str, Json], path: Path) -> None:
     """Write a summary, whole or not at all.
 

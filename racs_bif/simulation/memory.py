@@ -72,7 +72,7 @@ class FullMemory(Memory):
         pairs = zip(self._reversed[:, past], self._inputs[:, : self._made], strict=True)
         return np.array([np.dot(a, b) for a, b in pairs])
 
-    def push(self, e: Array, w: Array) -> None:  # noqa: ARG002 - outputs follow from inputs
+    def push(self, e: Array, w: Array) -> None:
         """Take in the deviations (ne,) of inputs and outputs of the step that was made."""
         self._inputs[:, self._made] = e
         self._made += 1
@@ -133,11 +133,11 @@ class ExponentialMemory(Memory):
         return self._recent.size + self._near.size + self._states.size + self._arrive.size
 
 
-def _full(laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> Memory:  # noqa: ARG001
+def _full(laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> Memory:
     return FullMemory(_rows([quadrature_weights(law, step, count + 1) for law in laws], count + 1))
 
 
-def _l1(laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> Memory:  # noqa: ARG001
+def _l1(laws: tuple[Law, ...], step: float, count: int, tolerance: float) -> Memory:
     return FullMemory(_rows([l1_weights(law, step, count + 1) for law in laws], count + 1))
 
 
@@ -146,11 +146,11 @@ def _rows(rows: list[Array], width: int) -> Array:
 
 
 METHODS: Final[dict[str, Build]] = {"bdf2": _full, "l1": _l1, "fast": ExponentialMemory}
-"""What discretises the laws: each takes laws, step, number of steps and the fast one's tolerance."""
+"""What discretises the laws: from laws, step, number of steps and the fast one's tolerance."""
 
 
 def order_of(method: str, laws: tuple[Law, ...]) -> float:
-    """Return the order of convergence of a method at fixed times, for solutions of linear models."""
+    """Return the order of convergence of a method at fixed times, for linear models."""
     return min([2.0, *map(l1_order, laws)]) if method == "l1" else 2.0
 
 

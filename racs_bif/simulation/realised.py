@@ -1,7 +1,8 @@
-"""Time integration of the realised, ordinary model, with scipy's integrators and exact Jacobians."""
+"""Time integration of the realised, ordinary model: scipy's integrators, exact Jacobians."""
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -40,7 +41,7 @@ class RealisedStepper:
         Relative error of a step.
     """
 
-    def __init__(  # noqa: PLR0913 - what a history is made of
+    def __init__(
         self,
         system: System,
         start: Start,
@@ -74,7 +75,7 @@ class RealisedStepper:
         x = self.initial_states()
         edges = [0.0, *self.inputs.jump_times, float(self.times[-1])]
         pieces, stopped = [x[:, None]], ""
-        for low, high in zip(edges, edges[1:], strict=False):
+        for low, high in pairwise(edges):
             try:
                 piece, stopped = self._piece(x, low, high, progress)
             except KeyboardInterrupt:

@@ -1,4 +1,4 @@
-"""What a sampled signal shows: extremes, crossings, period; by a cubic spline through its samples."""
+"""Extremes, crossings and period of a sampled signal, by a cubic spline through its samples."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ def _check_names(system: System, initial: Mapping[str, float]) -> None:
 def _held(system: System, X: Array, integrates: Array) -> Array:
     """Return X with the outputs of elements at rest while the states are held."""
     ny = len(system.states)
-    bound = ny + np.flatnonzero(~integrates)
+    bound = ny + np.flatnonzero(np.logical_not(integrates))
     X = X.copy()
     for _ in range(20):
         if not len(bound):

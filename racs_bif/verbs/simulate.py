@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from racs_bif.errors import UsageError, nearest
-from racs_bif.fractional.system import System
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.history import TimeHistory
 from racs_bif.results.provenance import describe
@@ -18,7 +17,10 @@ from racs_bif.simulation.memory import METHODS, check_laws
 from racs_bif.simulation.realised import SOLVERS
 from racs_bif.simulation.runs import Task, errors_of, extrapolated, run_exact, run_realised
 from racs_bif.simulation.start import begin
-from racs_bif.symbolic.model import Model
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.system import System
+    from racs_bif.symbolic.model import Model
 
 OPERATORS: Final = ("exact", "realised")
 _TOLERANCE: Final = {"exact": 1e-3, "realised": 1e-8}

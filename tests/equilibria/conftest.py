@@ -29,7 +29,7 @@ def disguise():
             turn[k, k], turn[k, k + 1], turn[k + 1, k], turn[k + 1, k + 1] = c, -s, s, c
             rotation = rotation * turn
         L = scale * rotation
-        # u_k = y_k + bend * (terms in earlier y only): triangular, with a Jacobian of determinant 1.
+        # u_k = y_k + bend * (terms in earlier y): triangular, with a Jacobian of determinant 1.
         y = L.inv() * sp.Matrix(new)
         u = []
         for k in range(count):

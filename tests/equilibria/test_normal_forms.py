@@ -8,7 +8,7 @@ import pytest
 import racs_bif as rb
 from racs_bif.verbs.curves import continue_curve
 
-DISGUISES = [(1.0, 0.0), (1.0, 0.3), (2.0, 0.3), (0.5, -0.4)]
+DISGUISES = [(1.0, 0.0), (2.0, 0.3), (0.5, -0.4)]
 BAUTIN = {
     "x": "b1*x - y*(1 + e*r2) + x*(b2*r2 + l*r2**2)",
     "y": "x*(1 + e*r2) + b1*y + y*(b2*r2 + l*r2**2)",
@@ -84,7 +84,7 @@ ZERO_HOPF = {
 
 
 @pytest.mark.parametrize(("s", "t"), [(1.0, 0.8), (-1.0, 0.8), (1.0, -1.2), (-1.0, -0.6)])
-@pytest.mark.parametrize(("scale", "bend"), DISGUISES[1:3])
+@pytest.mark.parametrize(("scale", "bend"), DISGUISES[1:2])
 def test_zero_hopf(disguise, curve_through, scale, bend, s, t):
     values = {"m1": -0.5, "m2": 0.2, "s": s, "t": t, "k": 0.1}
     model = disguise("zero-Hopf", ZERO_HOPF, values, scale=scale, bend=bend)
@@ -113,7 +113,7 @@ DOUBLE_HOPF = {
 @pytest.mark.parametrize(
     ("p", "scale", "bend", "case"),
     [
-        ((-1.0, -2.0, -3.0, -1.5), 2.0, 0.2, "simple case I"),
+        ((-1.0, -2.0, -3.0, -1.5), 2.0, 0.0, "simple case I"),
         ((-1.0, -0.5, -0.4, -1.5), 1.0, 0.0, "simple case II"),
         ((-1.0, 0.5, 0.4, -1.5), 0.5, 0.0, "simple case IV"),
         ((-1.0, -2.0, 3.0, 1.5), 1.0, 0.2, "difficult case VI"),

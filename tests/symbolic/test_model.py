@@ -150,7 +150,7 @@ def test_nested_too_deeply():
     nest = x
     for _ in range(400):
         nest = sp.sin(nest, evaluate=False)
-    with pytest.raises(ModelError, match="model 'toy': .* nested too deeply"):
+    with pytest.raises(ModelError, match=r"model 'toy': .* nested too deeply"):
         compile_model(build(equations={"x": nest}))
 
 

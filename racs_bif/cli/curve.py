@@ -1,0 +1,222 @@
+"""``racs-bif curve``: a curve of special points in two parameters."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from racs_bif.cli.options import (
+    add_model_options,
+    add_output_options,
+    add_realisation_options,
+    check_span,
+    open_system,
+)
+from racs_bif.cli.parser import Parser, choice, number
+from racs_bif.errors import UsageError
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from racs_bif.fractional.system import System
+    from racs_bif.results.branch import Branch
+    from racs_bif.results.special import SpecialPoint
+
+HELP: Final = "a curve of Hopf points, folds or branch points in two parameters"
+DESCRIPTION: Final = (
+    "Find a special point as PARAM1 moves through its span, then follow it in the plane of PARAM1 "
+    "and PARAM2, with its points of codimension two (BT, GH, ZH, HH, CP). A model with fractional "
+    "elements is followed on its exact characteristic equation unless told otherwise. Writes "
+    "branches.nc, diagram.png, diagram.svg and summary.json."
+)
+FILES: Final = ("branches.nc", "diagram.png", "diagram.svg", "summary.json")
+KINDS: Final = {"hopf": "H", "fold": "LP", "bp": "BP"}
+
+
+class Spans(argparse.Action):
+    """Collect ``--span NAME LOW HIGH`` by name."""
+
+    def __call__(
+        self, parser: argparse.ArgumentParser, namespace: Namespace, values: Any, *_: Any
+    ) -> None:
+        """Add a span."""
+        try:
+            span = number(values[1]), number(values[2])
+        except argparse.ArgumentTypeError as error:
+            parser.error(f"--span: {error}")
+        setattr(namespace, self.dest, {**getattr(namespace, self.dest), values[0]: span})
+
+
+def configure(parser: Parser) -> None:
+    """Add the verb's arguments."""
+    parser.add_argument(
+        "kind", metavar="LABEL", type=choice(*KINDS), help=f"what is followed: {', '.join(KINDS)}"
+    )
+    parser.add_argument("first", metavar="PARAM1", help="the parameter in which the point is found")
+    parser.add_argument("second", metavar="PARAM2", help="the other parameter of the plane")
+    parser.add_argument(
+        "--span",
+        dest="spans",
+        nargs=3,
+        action=Spans,
+        default={},
+        metavar=("NAME", "LOW", "HIGH"),
+        help="the interval of a parameter; default a tenth to ten times its value",
+    )
+    parser.add_argument(
+        "--point", metavar="NAME", help="where to start if there are several, for example H2"
+    )
+    parser.add_argument(
+        "--operator",
+        type=choice("exact", "realised"),
+        help="follow it on the exact equation (default with fractional elements) or the realisation",
+    )
+    add_model_options(parser)
+    add_realisation_options(parser)
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("racs_bif_out"),
+        metavar="DIR",
+        help="where the files go; default ./racs_bif_out",
+    )
+    add_output_options(parser)
+
+
+def run(arguments: Namespace) -> int:
+    """Find the point, follow its curve, write the files and tell what was found."""
+    from racs_bif.cli.terminal import progress
+    from racs_bif.results.atomic import check_writable
+    from racs_bif.verbs.curves import continue_curve
+
+    check_writable(arguments.out, FILES)
+    system = open_system(arguments)
+    names = (arguments.first, arguments.second)
+    for name in arguments.spans:
+        if name not in names:
+            msg = f"--span {name}: the plane is that of {names[0]} and {names[1]}"
+            raise UsageError(msg)
+        check_span(*arguments.spans[name])
+    with progress(arguments) as task:
+        start = _start(system, arguments, task)
+        operator = arguments.operator or ("exact" if system.fractional else "realised")
+        spans = {name: arguments.spans.get(name) or default_span(system, name) for name in names}
+        report = task(f"{arguments.kind} curve from {start.name}", spans[names[1]])
+        curve = continue_curve(
+            start, names, spans, kind=arguments.kind, operator=operator, progress=report
+        )
+    return _finish(curve, arguments)
+
+
+def default_span(system: System, name: str) -> tuple[float, float]:
+    """Return a tenth to ten times a parameter's value, within the model's validity.
+
+    Raises
+    ------
+    UsageError
+        If the parameter is zero.
+    ParameterError
+        If it is unknown.
+    """
+    from racs_bif.symbolic.model import find_parameter
+
+    table = {p.name: p.valid for p in system.parameter_table}
+    low, high = table[find_parameter(name, table)]
+    value = system.parameters[name]
+    if value == 0.0:
+        msg = f"'{name}' is 0, which gives no interval; give --span {name} LOW HIGH"
+        raise UsageError(msg)
+    ends = sorted((0.1 * value, 10.0 * value))
+    margin = 1e-3 * abs(value)
+    return max(ends[0], low + margin), min(ends[1], high - margin)
+
+
+def _start(system: System, arguments: Namespace, task: Any) -> SpecialPoint:  # noqa: ANN401
+    """Return the special point to start from."""
+    from racs_bif.verbs.all_equilibria import all_equilibria
+
+    name, label = arguments.first, KINDS[arguments.kind]
+    span = arguments.spans.get(name) or default_span(system, name)
+    probes = 0 if arguments.point is None else 6
+    report = task("equilibria", span)
+    found = all_equilibria(system, name, span, probes=probes, progress=report)
+    there = [p for p in found.special_points if p.label == label]
+    if not there and arguments.point is None:
+        found = all_equilibria(system, name, span, progress=report)
+        there = [p for p in found.special_points if p.label == label]
+    for point in there:
+        if arguments.point in {None, point.name}:
+            return point
+    names = ", ".join(p.name for p in there)
+    if not there:
+        msg = f"no {label} as {name} goes from {span[0]:g} to {span[1]:g}; give another --span"
+    else:
+        msg = f"no point '{arguments.point}'; there are: {names}"
+    raise UsageError(msg)
+
+
+def _finish(curve: Branch, arguments: Namespace) -> int:
+    from racs_bif import __version__
+    from racs_bif.cli.terminal import warn
+    from racs_bif.plots.curve import picture
+    from racs_bif.plots.style import save_picture
+    from racs_bif.results.atomic import staged
+    from racs_bif.results.diagram import Diagram
+    from racs_bif.results.files import save
+    from racs_bif.results.summary import curve_points, summarise, to_text, write_summary
+
+    diagram = Diagram(curve)
+    summary = summarise(diagram, arguments.command, __version__)
+    summary |= {"points": curve_points(curve)}
+    figure = picture([curve])
+    with staged(arguments.out) as folder:
+        save(diagram, folder / FILES[0])
+        save_picture(figure, folder / FILES[1])
+        save_picture(figure, folder / FILES[2])
+        write_summary(summary, folder / FILES[3])
+    if arguments.json:
+        print(to_text(summary), end="")
+    _tell(curve, arguments)
+    if curve.early:
+        warn(f"ended early, saved what there is in {arguments.out}: {curve.stopped}")
+    return int(curve.early)
+
+
+def _tell(curve: Branch, arguments: Namespace) -> None:
+    from rich.table import Table
+
+    from racs_bif.cli.tables import heading
+    from racs_bif.cli.terminal import console
+
+    screen = console(arguments)
+    screen.print(heading(curve.system))
+    a, b = curve.parameters
+    screen.print(f"\n{curve.name}: {curve.method}, {len(curve)} points. {curve.stopped}")
+    table = Table(box=None, pad_edge=False, collapse_padding=True)
+    table.add_column("", no_wrap=True)
+    for title in (a, b, "rad/s", "l1"):
+        table.add_column(title, justify="right", no_wrap=True)
+    table.add_column("")
+    rows = [("first", 0, ""), ("last", len(curve) - 1, "")]
+    for axis, name in enumerate((a, b)):
+        column = curve.values[:, axis]
+        inner = column[1:-1]
+        for extreme, k in (("least", int(inner.argmin()) + 1), ("largest", int(inner.argmax()) + 1)):
+            if min(column[0], column[-1]) <= column[k] <= max(column[0], column[-1]):
+                continue
+            rows.append((f"{extreme} {name}", k, "among the points"))
+    rows += [(p.name, p.index, p.title) for p in curve.special if p.label not in {"EP", "MX"}]
+    for name, k, told in rows:
+        numbers = [*curve.values[k], *(_at(curve, m, k) for m in ("omega", "l1"))]
+        shown = ["-" if n != n else f"{n:.7g}" for n in numbers]
+        table.add_row(name, *shown, told)
+    screen.print(table)
+    for note in curve.system.notes:
+        screen.print(f"\nNote: {note}")
+    screen.print(f"\nWrote {', '.join(FILES)} to {arguments.out.resolve()}", soft_wrap=True)
+
+
+def _at(curve: Branch, measure: str, k: int) -> float:
+    column = curve.measures.get(measure)
+    return float("nan") if column is None else float(column[k])
