@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.strings import model_from_strings
     from racs_bif.verbs.all_equilibria import all_equilibria
     from racs_bif.verbs.curves import continue_curve
+    from racs_bif.verbs.certify import certify
     from racs_bif.verbs.equilibria import continue_equilibria
     from racs_bif.verbs.orbits import continue_orbits
     from racs_bif.verbs.simulate import simulate
@@ -49,6 +50,7 @@ _HOMES: Final = {
     "Parameter": "racs_bif.symbolic.model",
     "TimeHistory": "racs_bif.results.history",
     "calibrate": "racs_bif.equilibria.calibrate",
+    "certify": "racs_bif.verbs.certify",
     "all_equilibria": "racs_bif.verbs.all_equilibria",
     "continue_curve": "racs_bif.verbs.curves",
     "continue_equilibria": "racs_bif.verbs.equilibria",
@@ -72,6 +74,7 @@ __all__ = [
     "TimeHistory",
     "all_equilibria",
     "calibrate",
+    "certify",
     "continue_curve",
     "continue_equilibria",
     "continue_orbits",

@@ -11,7 +11,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Final
 
-from racs_bif.cli import calibrate, continue_, curve, models, realisations, simulate, spectrum
+from racs_bif.cli import calibrate, certify, continue_, curve, models, realisations, simulate, spectrum
 from racs_bif.cli.parser import Parser
 from racs_bif.errors import ConvergenceError, RacsBifError, UsageError, nearest
 
@@ -29,6 +29,7 @@ VERBS: Final[dict[str, ModuleType]] = {
     "calibrate": calibrate,
     "models": models,
     "spectrum": spectrum,
+    "certify": certify,
     "realisations": realisations,
 }
 """Each verb's module has HELP, `configure(parser)` and `run(arguments) -> int`."""

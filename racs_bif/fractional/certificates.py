@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.argument import count_unstable
+from racs_bif.fractional.argument import Count, count_unstable
 from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
 
@@ -113,8 +113,8 @@ def resolve(
         X, value, correction, exact = fold.X, fold.value, fold.residual, 0.0
     moved = abs(value - place.value) / max(abs(value), 0.1 * width, _LEAST)
     turned = abs(exact - omega) / exact if omega else 0.0
-    size = max(float(np.abs(X).max()), float(np.abs(place.X).max()), 1e-12)
-    shift = max(moved, turned, float(np.abs(X - place.X).max()) / size)
+    away = float(np.abs(X - place.X).max()) / _size(X, place.X)
+    shift = max(moved, turned, away)
     if not shift <= tolerance:
         name, rad = path.names[0], f", omega = {exact:.7g} rad/s" if omega else ""
         msg = (
@@ -125,8 +125,8 @@ def resolve(
     return Resolved(X=X, value=value, omega=exact, shift=shift, correction=correction)
 
 
-def exact_count(model: ExactModel, path: ParameterPath, place: Place) -> int:
-    """Return the number of unstable roots of the exact equilibrium at a place.
+def exact_count(model: ExactModel, path: ParameterPath, place: Place) -> Count:
+    """Count the unstable roots of the exact equilibrium at a place.
 
     Raises
     ------
@@ -135,8 +135,8 @@ def exact_count(model: ExactModel, path: ParameterPath, place: Place) -> int:
     """
     p = path.vector(place.value)
     X = model.equilibrium(place.X, p)
-    _check_near(X, place.X)
-    return count_unstable(model, X, p).unstable
+    _check_near(X, place.X, _NEAR * _size(X, place.X))
+    return count_unstable(model, X, p)
 
 
 def beside(model: ExactModel, path: ParameterPath, start: Place, end: Place) -> Place:
@@ -167,17 +167,21 @@ def beside(model: ExactModel, path: ParameterPath, start: Place, end: Place) -> 
         if not np.all(np.isfinite(z)):
             break
         if np.all(np.abs(step) <= _TOLERANCE * (np.abs(z).max() + 1.0)):
-            _check_near(z[:-1], target[:-1])
+            allowed = max(_NEAR * _size(start.X, end.X), float(np.abs(chord[:-1]).max()))
+            _check_near(z[:-1], target[:-1], allowed)
             return Place(X=z[:-1], value=float(z[-1]))
     msg = f"no exact equilibrium found beside {path.names[0]} = {start.value:.7g}"
     raise ConvergenceError(msg)
 
 
-def _check_near(X: Array, reported: Array) -> None:
-    size = max(float(np.abs(X).max()), float(np.abs(reported).max()), 1e-12)
-    away = float(np.abs(X - reported).max()) / size
-    if away > _NEAR:
-        msg = f"the exact equilibrium is elsewhere, relative distance {away:.1e}"
+def _size(one: Array, other: Array) -> float:
+    return max(float(np.abs(one).max()), float(np.abs(other).max()), 1e-12)
+
+
+def _check_near(X: Array, reported: Array, allowed: float) -> None:
+    away = float(np.abs(X - reported).max())
+    if away > allowed:
+        msg = f"the exact equilibrium is elsewhere: its states differ by {away:.1e}"
         raise ConvergenceError(msg)
 
 

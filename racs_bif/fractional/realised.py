@@ -179,7 +179,7 @@ class RealisedField(VectorField):
         """Return the derivative of f along `dp`, shaped like `x`."""
         frame, slopes = self.frame(p), self._filter_slopes(p, dp)
         X, dP = frame.right @ x, self._full_direction(dp, slopes)
-        value = self.compiled.core_p(X, frame.P, _like(dP, x))
+        value = self.compiled.core_p(X, frame.P, dP)
         if slopes is None:
             return np.asarray(frame.left @ value)
         z = x[self._ny :]

@@ -14,7 +14,7 @@ from racs_bif.orbits.collocation_mesh import better_intervals
 from racs_bif.orbits.collocation_settings import CollocationSettings
 from racs_bif.orbits.equations import Collocated, Equations
 from racs_bif.orbits.floquet import Floquet, floquet
-from racs_bif.orbits.folded import FoldedRing
+from racs_bif.orbits.folded import Folds
 from racs_bif.orbits.gauss import gauss
 from racs_bif.orbits.history import History
 from racs_bif.orbits.intervals import GROWTH, BorderedIntervals, Linearised
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
 
-_SAME: Final = 1e-9
+_SAME: Final = 1e-8
 """Relative distance below which the linearised equations are taken over."""
-_FOLDED: Final = 4
-"""Most transition matrices multiplied for the multipliers, so that small ones are not lost."""
+_FEWEST: Final = 4
+"""Fewest products of transition matrices for the multipliers, so that small ones are not lost."""
 
 
 class CollocationProblem(OrbitProblem):
@@ -62,7 +62,7 @@ class CollocationProblem(OrbitProblem):
         its halves differ. Otherwise 1.
     """
 
-    def __init__(  # noqa: PLR0913 - the curve and its phase condition are two things
+    def __init__(
         self,
         field: VectorField,
         path: ParameterPath,
@@ -248,10 +248,10 @@ class CollocationProblem(OrbitProblem):
         """Return the multipliers, from the transition matrices of the intervals."""
         if self._floquet is None or not np.array_equal(self._floquet[0], z):
             scales = self.reference(z).scales
-            folded = FoldedRing(self.linearised(z).transitions, GROWTH, _FOLDED)
-            starts = folded.picked(self.nodes(z)[:, 0])
+            folds = Folds(self.linearised(z).transitions, GROWTH, _FEWEST)
+            starts = folds.begins(self.nodes(z)[:, 0])
             velocities = self.equations.rates(starts, float(z[-1])) / scales
-            self._floquet = (np.array(z), floquet(folded.folded, velocities))
+            self._floquet = (np.array(z), floquet(folds.products, velocities))
         return self._floquet[1]
 
     def scales(self, z: Array) -> Array:

@@ -10,8 +10,7 @@ import numpy as np
 from racs_bif.errors import UsageError
 from racs_bif.orbits.collocation import CollocationProblem
 from racs_bif.orbits.collocation_settings import CollocationSettings
-from racs_bif.orbits.condense import BorderedRing
-from racs_bif.orbits.folded import FoldedRing
+from racs_bif.orbits.folded import BorderedFolds, Folds
 from racs_bif.orbits.history import reference_of
 from racs_bif.orbits.intervals import GROWTH
 from racs_bif.orbits.mesh import Mesh
@@ -230,7 +229,7 @@ def _mode(problem: CollocationProblem, z: Array, multiplier: float) -> Array:
     border = np.random.default_rng(_SEED).standard_normal((2, 1, count, size))
     border /= np.sqrt(count * size)
     columns, corner = np.ascontiguousarray(np.moveaxis(border[0], 0, -1)), np.zeros((1, 1))
-    ring = BorderedRing(FoldedRing(transitions, GROWTH), columns, border[1], corner)
+    ring = BorderedFolds(Folds(transitions, GROWTH), columns, border[1], corner)
     points, singularity = ring.solve(np.zeros((count, size, 1)), np.ones((1, 1)))
     starts = points[None, :, :, 0]
     if abs(singularity[0, 0]) > _SINGULAR * float(np.abs(starts).max()):

@@ -10,10 +10,10 @@ from racs_bif.errors import ConvergenceError
 from racs_bif.orbits.checked import CheckedField
 from racs_bif.orbits.intervals import Linearised
 from racs_bif.orbits.lowrank import CONDITION, LowRankStages, Modes, modes
-from racs_bif.orbits.piecewise import Piecewise
 from racs_bif.orbits.stages import DenseStages, Stages
 
 if TYPE_CHECKING:
+    from racs_bif.orbits.piecewise import Piecewise
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
     from racs_bif.symbolic.structure import Structure

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.orbits.condense import Ring
+from racs_bif.orbits.condense import BorderedRing, Ring
 
 if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array
 
 
-class FoldedRing(Ring):
-    """The ring P_m x_m - x_(m+1), neighbours multiplied first, condensed orthogonally then.
+class Folds:
+    """Neighbouring transition matrices multiplied, pair by pair and again.
 
-    A product costs a hundredth of an orthogonal elimination and is as accurate while its factors
-    do not grow.
+    A product costs a hundredth of an orthogonal elimination (`Ring`) and is as accurate while its
+    factors do not grow.
 
     Parameters
     ----------
@@ -24,53 +24,106 @@ class FoldedRing(Ring):
         The matrices P_m, in units in which 1 is a typical change of every state.
     growth : float
         Largest norm of a product.
-    most : int, optional
-        Most neighbours to multiply, a power of 2; by default any number.
+    fewest : int
+        Fewest products to stop at.
 
     Attributes
     ----------
-    folded : array (M', n, n)
-        The products.
+    pairs : list of (array, array)
+        First and second factors (h, n, n) of every level.
+    products : array (M', n, n)
+        What is left.
     """
 
-    def __init__(self, transitions: Array, growth: float, most: int | None = None) -> None:
-        self._folds: list[tuple[Array, Array]] = []
+    def __init__(self, transitions: Array, growth: float, fewest: int = 1) -> None:
+        self.pairs: list[tuple[Array, Array]] = []
         blocks = transitions
-        while len(blocks) > 1 and (most is None or 2 ** len(self._folds) < most):
+        while len(blocks) > 1 and (len(blocks) + 1) // 2 >= fewest:
             even = len(blocks) // 2 * 2
             first, second = blocks[:even:2], blocks[1:even:2]
             products = second @ first
             # not finite counts as grown
             if not float(np.linalg.norm(products, axis=(1, 2)).max()) <= growth:
                 break
-            self._folds.append((first, second))
+            self.pairs.append((first, second))
             blocks = np.concatenate((products, blocks[even:]))
-        self.folded = blocks
-        super().__init__(blocks, np.broadcast_to(-np.eye(blocks.shape[-1]), blocks.shape))
+        self.products = blocks
 
-    def picked(self, points: Array) -> Array:
+    def begins(self, points: Array) -> Array:
         """Return those of the points (M, n) at which the products begin (M', n)."""
-        for _ in self._folds:
-            points = points[::2]
-        return points
+        return points[:: 2 ** len(self.pairs)]
 
-    def reduce(self, rhs: Array) -> tuple[Array, list[Array]]:
-        """Condense right-hand sides (M, n, k); see `Ring.reduce`."""
+    def forward(self, rhs: Array) -> tuple[Array, list[Array]]:
+        """Fold right-hand sides (M, n, c); return them and what was folded away."""
         kept = []
-        for first, second in self._folds:
+        for first, second in self.pairs:
             even = 2 * len(first)
             kept.append(rhs[:even:2])
             rhs = np.concatenate((second @ rhs[:even:2] + rhs[1:even:2], rhs[even:]))
-        condensed, rest = super().reduce(rhs)
-        return condensed, [*kept, *rest]
+        return rhs, kept
 
-    def expand(self, first: Array, kept: list[Array]) -> Array:
-        """Return all points (M, n, k) from the first one (n, k) and what `reduce` kept."""
-        folds = len(self._folds)
-        points = super().expand(first, kept[folds:])
-        for (matrix, _), rhs in zip(reversed(self._folds), reversed(kept[:folds]), strict=True):
-            half = len(rhs)
-            between = matrix @ points[:half] - rhs
-            woven = np.stack((points[:half], between), axis=1).reshape(-1, *first.shape)
+    def backward(self, rows: Array) -> tuple[Array, list[Array]]:
+        """Fold rows of coefficients (M, r, n); return them and what was folded away."""
+        kept = []
+        for first, _ in self.pairs:
+            even = 2 * len(first)
+            kept.append(rows[1:even:2])
+            rows = np.concatenate((rows[:even:2] + rows[1:even:2] @ first, rows[even:]))
+        return rows, kept
+
+    def unfold(self, points: Array, kept: list[Array]) -> Array:
+        """Return all points (M, n, c), where x_(m+1) = P_m x_m + kept for those folded away."""
+        for (first, _), added in zip(reversed(self.pairs), reversed(kept), strict=True):
+            half = len(added)
+            between = first @ points[:half] + added
+            woven = np.stack((points[:half], between), axis=1).reshape(-1, *points.shape[1:])
             points = np.concatenate((woven, points[half:]))
         return points
+
+
+class BorderedFolds:
+    """Solver of the ring x_(m+1) = P_m x_m + C_m u + r_m bordered by k rows and k columns.
+
+    Parameters
+    ----------
+    folds : Folds
+        The transition matrices P.
+    columns : array (M, n, k)
+        C.
+    rows : array (k, M, n)
+        Border rows.
+    corner : array (k, k)
+        Where they meet.
+    """
+
+    def __init__(self, folds: Folds, columns: Array, rows: Array, corner: Array) -> None:
+        self._folds = folds
+        folded, self._columns = folds.forward(columns)
+        left, self._rows = folds.backward(np.moveaxis(rows, 0, 1))
+        for row, column in zip(self._rows, self._columns, strict=True):
+            corner = corner + np.sum(row @ column, axis=0)
+        products = folds.products
+        ring = Ring(products, np.broadcast_to(-np.eye(products.shape[-1]), products.shape))
+        self._ring = BorderedRing(ring, folded, np.moveaxis(left, 1, 0), corner)
+
+    def sign(self) -> float:
+        """Return the sign of the determinant, the same however long the ring: `Ring.sign`."""
+        return self._ring.sign()
+
+    def solve(self, rhs: Array, border: Array) -> tuple[Array, Array]:
+        """Return the points (M, n, c) and the unknowns u (k, c).
+
+        Parameters
+        ----------
+        rhs : array (M, n, c)
+            r.
+        border : array (k, c)
+            Right-hand sides of the rows.
+        """
+        folded, kept = self._folds.forward(rhs)
+        for row, added in zip(self._rows, kept, strict=True):
+            border = border - np.sum(row @ added, axis=0)
+        points, unknowns = self._ring.solve(-folded, border)
+        pairs = zip(kept, self._columns, strict=True)
+        moved = [added + column @ unknowns for added, column in pairs]
+        return self._folds.unfold(points, moved), unknowns

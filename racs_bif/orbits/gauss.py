@@ -17,9 +17,10 @@ from math import factorial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.symbolic.field import Array
 
 
@@ -80,7 +81,7 @@ def gauss(degree: int) -> Gauss:
     points, weights = np.polynomial.legendre.leggauss(degree)
     c = 0.5 * (points + 1.0)
     nodes = np.linspace(0.0, 1.0, degree + 1)
-    powers = np.linalg.inv(np.vander(nodes, increasing=True))
+    powers = np.asarray(np.linalg.inv(np.vander(nodes, increasing=True)), dtype=float)
     exponents = np.arange(degree + 1)
     at_gauss = np.vander(c, degree + 1, increasing=True)
     steeper = np.zeros_like(at_gauss)

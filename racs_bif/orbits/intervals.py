@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from racs_bif.orbits.condense import BorderedRing
-from racs_bif.orbits.folded import FoldedRing
+from racs_bif.orbits.folded import BorderedFolds, Folds
 
 if TYPE_CHECKING:
     from racs_bif.orbits.gauss import Gauss
@@ -45,9 +44,9 @@ class Linearised:
         self.transitions = stages.transitions()
 
     @cached_property
-    def ring(self) -> FoldedRing:
-        """The ring of transition matrices."""
-        return FoldedRing(self.transitions, GROWTH)
+    def folds(self) -> Folds:
+        """The transition matrices, multiplied as far as they do not grow."""
+        return Folds(self.transitions, GROWTH)
 
     @cached_property
     def ends(self) -> Array:
@@ -56,7 +55,7 @@ class Linearised:
 
     def at_ends(self, stages: Array) -> Array:
         """Return what values at the Gauss points (c, N, m, n) add at the ends (c, N, n)."""
-        return np.asarray(np.einsum("j,ckja->cka", self.gauss.end, stages))
+        return np.asarray(self.gauss.end @ stages)
 
     def from_starts(self, starts: Array) -> Array:
         """Return right-hand sides (c, N, m, n) of starts (c, N, n)."""
@@ -81,13 +80,12 @@ class BorderedIntervals:
     def __init__(self, equations: Linearised, nodes: Array, stages: Array, corner: Array) -> None:
         g = equations.gauss
         self._equations = equations
-        inner = g.inner.T @ nodes[:, :, 1:]
-        self._adjoint = equations.stages.adjoint(stages + inner)
-        rows = nodes[:, :, 0] + np.einsum("l,ckla->cka", g.inner_start, nodes[:, :, 1:])
-        rows += np.einsum("j,ckja->cka", g.row_sums, self._adjoint)
-        meeting = corner + np.einsum("ckja,dkja->cd", self._adjoint, equations.columns)
+        inner = nodes[:, :, 1:]
+        self._adjoint = equations.stages.adjoint(stages + g.inner.T @ inner)
+        rows = nodes[:, :, 0] + g.inner_start @ inner + g.row_sums @ self._adjoint
+        meeting = corner + _products(self._adjoint, equations.columns)
         columns = np.ascontiguousarray(np.moveaxis(equations.ends, 0, -1))
-        self._ring = BorderedRing(equations.ring, columns, rows, meeting)
+        self._ring = BorderedFolds(equations.folds, columns, rows, meeting)
 
     def sign(self) -> float:
         """Return the sign of the determinant, the same on all meshes."""
@@ -111,14 +109,21 @@ class BorderedIntervals:
             Period and parameter.
         """
         equations, g = self._equations, self._equations.gauss
-        moved = equations.at_ends(equations.stages.solve(stages))
-        border = border - np.einsum("ckja,dkja->cd", self._adjoint, stages)
-        points, unknowns = self._ring.solve(-np.moveaxis(moved, 0, -1), border)
-        starts = np.moveaxis(points, -1, 0)
+        moved = np.zeros((*stages.shape[:2], stages.shape[-1]))
+        active = stages.any(axis=(1, 2, 3))
+        moved[active] = equations.at_ends(equations.stages.solve(stages[active]))
+        border = border - _products(self._adjoint, stages)
+        points, unknowns = self._ring.solve(np.moveaxis(moved, 0, -1), border)
+        starts = np.ascontiguousarray(np.moveaxis(points, -1, 0))
         rhs = equations.from_starts(starts) + stages
-        rhs += np.einsum("uc,ukja->ckja", unknowns, equations.columns)
+        rhs += np.tensordot(unknowns.T, equations.columns, 1)
         values = equations.stages.solve(rhs)
         nodes = np.empty_like(values)
         nodes[:, :, 0] = starts
         nodes[:, :, 1:] = starts[:, :, None] * g.inner_start[:, None] + g.inner @ values
         return nodes, unknowns
+
+
+def _products(a: Array, b: Array) -> Array:
+    """Return the inner products (c, d) of a (c, ...) and b (d, ...)."""
+    return np.asarray(a.reshape(len(a), -1) @ b.reshape(len(b), -1).T)

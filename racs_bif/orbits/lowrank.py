@@ -150,18 +150,18 @@ class LowRankStages(Stages):
         products = self._seen[:, None, :] * self._added.T[None]  # (r, k, K)
         small = _real(kernels) @ _out(products.reshape(r * k, -1).T)
         small = self._tau[:, None, None] * small
-        small = small.reshape(count, degree, degree, r, k)
-        loop = np.einsum("Nikr,Nijrl->Nikjl", varying, small).reshape(count, degree * k, -1)
+        small = small.reshape(count, degree, degree, r, k).swapaxes(2, 3)
+        loop = varying @ small.reshape(count, degree, r, degree * k)
         blocks = np.zeros((count, degree, k, degree, r))
         for j in range(degree):
             blocks[:, j, :, j] = varying[:, j]
-        matrix = np.eye(degree * k) - loop
+        matrix = np.eye(degree * k) - loop.reshape(count, degree * k, -1)
         return np.asarray(np.linalg.solve(matrix, blocks.reshape(count, degree * k, -1)))
 
     def transitions(self) -> Array:
         """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
         g, basis, tau = self._gauss, self._basis, self._tau
-        count, degree = self._resolvent.shape[:2]
+        count = len(tau)
         starts = g.left @ g.row_sums.astype(complex)
         ends = g.end.astype(complex) @ g.right
         growth = g.end_start + (starts * ends) @ self._resolvent  # (N, K)
