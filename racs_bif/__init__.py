@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     )
     from racs_bif.symbolic.strings import model_from_strings
     from racs_bif.verbs.all_equilibria import all_equilibria
-    from racs_bif.verbs.curves import continue_curve
     from racs_bif.verbs.certify import certify
+    from racs_bif.verbs.curves import continue_curve
     from racs_bif.verbs.equilibria import continue_equilibria
     from racs_bif.verbs.orbits import continue_orbits
     from racs_bif.verbs.simulate import simulate

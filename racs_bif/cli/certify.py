@@ -106,6 +106,8 @@ def _tell(found: Certificate, arguments: Namespace) -> None:
         verdict = "holds" if check.holds else "FAILS"
         table.add_row(check.subject, check.branch, check.strength, verdict, check.finding)
     screen.print(table)
+    if found.strength == "proof":
+        screen.print("\nA proof's box bounds the states too: see 'box' in what --json prints.")
     for note in found.notes:
         screen.print(f"\nNote: {note}")
     total = len(found.checks)

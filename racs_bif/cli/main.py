@@ -11,7 +11,16 @@ import os
 import sys
 from typing import TYPE_CHECKING, Final
 
-from racs_bif.cli import calibrate, certify, continue_, curve, models, realisations, simulate, spectrum
+from racs_bif.cli import (
+    calibrate,
+    certify,
+    continue_,
+    curve,
+    models,
+    realisations,
+    simulate,
+    spectrum,
+)
 from racs_bif.cli.parser import Parser
 from racs_bif.errors import ConvergenceError, RacsBifError, UsageError, nearest
 

@@ -18,6 +18,7 @@ from racs_bif.equilibria.curve_problem import (
     oblique,
 )
 from racs_bif.equilibria.hopf_form import Complex, Cubic
+from racs_bif.fractional.exact_form import exact_cubic
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Array, Point, Spectrum
@@ -170,31 +171,12 @@ class ExactHopfCurve(CurveProblem):
         return self._cubic[1]
 
     def _cubic_at(self, z: Array) -> Cubic:
-        solved, exact, s = self._solve(z), self.exact, 1j * float(z[self.n])
+        solved = self._solve(z)
         X, p = self.base(z)
-        P = exact.compiled.padded(p)
         q = solved.v / np.linalg.norm(solved.v[: self.own])
-        slope = exact.weights_s(s, p)
-        moved = slope.left * q - slope.right * (solved.core_x @ q)
-        adjoint = solved.w.conj() / (solved.w.conj() @ moved) * solved.weights.right
-
-        def response(rate: complex, form: Complex) -> Complex:
-            w = exact.weights(rate, p)
-            delta = np.diag(w.left) - w.right[:, None] * solved.core_x
-            return np.asarray(np.linalg.solve(delta, w.right * form))
-
-        xx, bar = exact.compiled.core_xx, q.conj()
-        double = response(2.0 * s, np.asarray(xx(X, P, q, q)))
-        static = response(0.0, np.asarray(xx(X, P, q, bar)))
-        terms = np.array(
-            [
-                0.5 * adjoint @ exact.compiled.core_xxx(X, P, q, q, bar),
-                adjoint @ xx(X, P, q, static),
-                0.5 * adjoint @ xx(X, P, bar, double),
-            ]
-        )
-        size = float(np.abs(terms).sum())
-        return Cubic(complex(terms.sum()), size, h20=double, h11=static.real)
+        found = exact_cubic(self.exact, X, p, self.frequency(z), (q, solved.w))
+        size = float(np.abs(found.terms).sum())
+        return Cubic(found.c1, size, h20=found.h20, h11=found.h11)
 
     def measures(self, z: Array) -> dict[str, float]:
         """Return frequency and first Lyapunov coefficient of the exact model."""

@@ -138,7 +138,8 @@ class EnclosedModel:
         """Return the laws of all elements."""
         if self.ny == self.size:
             return Laws((), ())
-        numbers, slopes = self._call("laws", p), self._call("laws_p", p, dp)
+        numbers = cast("list[arb]", self._call("laws", p))
+        slopes = cast("list[arb]", self._call("laws_p", p, dp))
         n, d, start = [], [], 0
         for a, b in self._compiled.meta["law_sizes"]:
             stop = start + 2 * (a + b)
@@ -149,9 +150,7 @@ class EnclosedModel:
         return Laws(tuple(n), tuple(d))
 
 
-def _sums(
-    numbers: list[arb], slopes: list[arb], a: int, b: int
-) -> tuple[EnclosedSum, EnclosedSum]:
+def _sums(numbers: list[arb], slopes: list[arb], a: int, b: int) -> tuple[EnclosedSum, EnclosedSum]:
     """Arrange one law's numbers; the least order is taken from all, so that it is exactly zero."""
     coefficients = [*range(a), *range(2 * a, 2 * a + b)]
     orders = [*range(a, 2 * a), *range(2 * a + b, 2 * a + 2 * b)]
@@ -180,7 +179,9 @@ class EnclosedPoint:
     def __init__(self, model: EnclosedModel, x: list[arb], p: list[arb], dp: list[arb]) -> None:
         self.model, self.x, self.p, self.dp = model, x, p, dp
         self.laws = model.laws(p, dp)
-        self._units = [[flint().arb(int(i == j)) for i in range(model.size)] for j in range(model.size)]
+        self._units = [
+            [flint().arb(int(i == j)) for i in range(model.size)] for j in range(model.size)
+        ]
 
     @cached_property
     def core_x(self) -> Matrix:
@@ -275,9 +276,11 @@ def solve_bordered(
     last = package.acb_mat(n + 1, 1, [0] * n + [1])
     whole = package.acb_mat(rows)
     try:
-        right, left = whole.solve(last, algorithm="precond"), whole.transpose().solve(last, algorithm="precond")
+        # Preconditioned: plain elimination widens the boxes a thousand times as much.
+        right = whole.solve(last, algorithm="precond")
+        left = whole.transpose().solve(last, algorithm="precond")
     except ZeroDivisionError:
         msg = "the bordered characteristic matrix may be singular in the box"
         raise UnboundedError(msg) from None
     v = [right[k, 0] for k in range(n)]
-    return v, [left[k, 0] for k in range(n)], finite(right[n, 0])
+    return v, [left[k, 0] for k in range(n)], cast("acb", finite(right[n, 0]))

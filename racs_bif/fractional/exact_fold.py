@@ -93,8 +93,8 @@ def solve_fold(model: ExactModel, path: ParameterPath, X: Array, value: float) -
 def null_vectors(matrix: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return left and right null vectors (size,) of a nearly singular matrix.
 
-    They are singular vectors of the matrix with its rows scaled: ``left`` borders it from the right,
-    ``conj(right)`` from below, so that the bordered matrix is regular.
+    They are singular vectors of the matrix with its rows scaled: ``left`` borders it from the
+    right, ``conj(right)`` from below, so that the bordered matrix is regular.
     """
     rows = np.abs(matrix).max(axis=1, keepdims=True)
     rows[rows == 0.0] = 1.0

@@ -1,10 +1,10 @@
 """Normal form of a Hopf point of the exact fractional model, from its characteristic matrix alone.
 
-The orbit is ``X = X0 + w q e^(i theta) + h11 |w|^2 + h20 w^2 e^(2 i theta) / 2 + conj``; harmonic k obeys
-``Delta(i k omega) X_k = W(i k omega) N_k``, N the nonlinear part of the core and W the numerators of the laws.
-With Delta(i omega) q = 0, p* Delta(i omega) = 0 the first harmonic is solvable if
-``p* Delta'(i omega) q w' = p* W(i omega) (C(q, q, q') / 2 + B(q, h11) + B(q', h20) / 2) w |w|^2``,
-which for an ordinary system is the formula of Kuznetsov, section 5.4.
+The orbit is ``X = X0 + w q e^(i theta) + h11 |w|^2 + h20 w^2 e^(2 i theta) / 2 + conj``; harmonic k
+obeys ``Delta(i k omega) X_k = W(i k omega) N_k``, N the nonlinear part of the core and W the
+numerators of the laws. With Delta(i omega) q = 0, p* Delta(i omega) = 0 the first harmonic is
+solvable if ``p* Delta'(i omega) q w' = p* W(i omega) (C(q, q, q') / 2 + B(q, h11) + B(q', h20) / 2)
+w |w|^2``, which for an ordinary system is the formula of Kuznetsov, section 5.4.
 """
 
 from __future__ import annotations
@@ -67,6 +67,74 @@ class ExactForm:
         return float(self.parameter_curvature / (4.0 * abs(self.q[k]) ** 2))
 
 
+@dataclass(frozen=True)
+class ExactCubic:
+    """The cubic coefficient and what it is made of.
+
+    Parameters
+    ----------
+    terms : complex array (3,)
+        Contributions of C(q, q, q'), of the shifted mean and of the second harmonic.
+    h20 : complex array (size,)
+        Second harmonic.
+    h11 : array (size,)
+        Shift of the mean.
+    speed : complex
+        ``p* Delta'(i omega) q``.
+    """
+
+    terms: Complex
+    h20: Complex
+    h11: Array
+    speed: complex
+
+    @property
+    def c1(self) -> complex:
+        """Cubic coefficient of ``w' = mu w + c1 w |w|^2``."""
+        return complex(self.terms.sum())
+
+
+def exact_cubic(
+    model: ExactModel, X: Array, p: Array, omega: float, vectors: tuple[Complex, Complex]
+) -> ExactCubic:
+    """Compute the cubic coefficient of an exact Hopf point.
+
+    Parameters
+    ----------
+    model : ExactModel
+        The exact model.
+    X, p : array (size,), array (np,)
+        The equilibrium and its base parameters.
+    omega : float
+        Frequency [rad/s].
+    vectors : (array, array)
+        q with Delta(i omega) q = 0, of length one over the model's own states, and the left null
+        vector, of any length.
+    """
+    q, left = vectors
+    s = 1j * omega
+    core, P = model.compiled, model.compiled.padded(p)
+    core_x = core.core_jacobian(X, P)
+
+    def response(rate: complex, form: Complex) -> Complex:
+        w = model.weights(rate, p)
+        delta = np.diag(w.left) - w.right[:, None] * core_x
+        return np.asarray(np.linalg.solve(delta, w.right * form))
+
+    slope = model.weights_s(s, p)
+    speed = complex(np.vdot(left, slope.left * q - slope.right * (core_x @ q)))
+    adjoint = left.conj() / speed * model.weights(s, p).right
+    bar = q.conj()
+    h20 = response(2.0 * s, np.asarray(core.core_xx(X, P, q, q)))
+    h11 = response(0.0, np.asarray(core.core_xx(X, P, q, bar))).real
+    terms = (
+        0.5 * adjoint @ core.core_xxx(X, P, q, q, bar),
+        adjoint @ core.core_xx(X, P, q, h11.astype(complex)),
+        0.5 * adjoint @ core.core_xx(X, P, bar, h20),
+    )
+    return ExactCubic(np.array(terms, dtype=np.complex128), h20, h11, speed)
+
+
 def exact_form(model: ExactModel, path: ParameterPath, hopf: ExactHopf) -> ExactForm:
     """Compute the normal form of an exact Hopf point.
 
@@ -86,41 +154,23 @@ def exact_form(model: ExactModel, path: ParameterPath, hopf: ExactHopf) -> Exact
     X, s = hopf.X, 1j * hopf.omega
     p, dp = path.vector(hopf.value), path.direction(hopf.value)
     core, padded = model.compiled, model.compiled.padded
-    P, dP = padded(p), padded(dp)
-    core_x = core.core_jacobian(X, P)
-    delta, turned = model.delta(s, X, p), None
-    q = hopf.q / np.sqrt(np.vdot(hopf.q[: model.ny], hopf.q[: model.ny]).real or 1.0)
-    left = np.linalg.svd(delta / np.abs(delta).max(axis=1, keepdims=True))[0][:, -1]
-    left = left / np.abs(delta).max(axis=1)
-    turned = core_x @ q
-    w, w_s, w_p = model.weights(s, p), model.weights_s(s, p), model.weights_p(s, p, dp)
-
-    def forced(multiple: int, value: Complex) -> Complex:
-        """Return the answer of harmonic `multiple` to a nonlinear part."""
-        at = s * multiple
-        right = model.weights(at, p).right if multiple else _static(model, p)
-        matrix = model.delta(at, X, p) if multiple else -model.jacobian(X, p).astype(complex)
-        return np.asarray(np.linalg.solve(matrix, right * value))
-
-    h20 = forced(2, np.asarray(core.core_xx(X, P, q, q)))
-    h11 = forced(0, np.asarray(core.core_xx(X, P, q, q.conj()))).real
-    cubic = 0.5 * core.core_xxx(X, P, q, q, q.conj()) + core.core_xx(X, P, q, h11)
-    cubic = cubic + 0.5 * core.core_xx(X, P, q.conj(), h20)
-    speed = np.vdot(left, w_s.left * q - w_s.right * turned)
+    own = float(np.linalg.norm(hopf.q[: model.ny]))
+    q = hopf.q / (own or float(np.linalg.norm(hopf.q)))
+    delta = model.delta(s, X, p)
+    size = np.abs(delta).max(axis=1)
+    left = np.linalg.svd(delta / size[:, None])[0][:, -1] / size
+    cubic = exact_cubic(model, X, p, hopf.omega, (q, left))
+    w, w_p = model.weights(s, p), model.weights_p(s, p, dp)
     drift = -np.linalg.solve(model.jacobian(X, p), model.residual_p(X, p, dp))
-    moved = core.core_xp(X, P, q, dP) + core.core_xx(X, P, q, drift)
+    moved = core.core_xp(X, padded(p), q, padded(dp))
+    moved = moved + core.core_xx(X, padded(p), q, drift.astype(complex))
+    turned = core.core_jacobian(X, padded(p)) @ q
     by_value = w_p.left * q - w_p.right * turned - w.right * moved
     return ExactForm(
         omega=hopf.omega,
         q=q,
-        h20=h20,
-        h11=h11,
-        c1=complex(np.vdot(left, w.right * cubic) / speed),
-        mu_slope=complex(-np.vdot(left, by_value) / speed),
+        h20=cubic.h20,
+        h11=cubic.h11,
+        c1=cubic.c1,
+        mu_slope=complex(-np.vdot(left, by_value) / cubic.speed),
     )
-
-
-def _static(model: ExactModel, p: Array) -> Array:
-    """Return the weights of the equilibrium equations: one, and N(0) of each law."""
-    gains = [law.numerator.at_zero for law in model.laws(p)]
-    return np.array([*[1.0] * model.ny, *gains])

@@ -11,15 +11,16 @@ balls of relative radius 2**-50.
 from __future__ import annotations
 
 import math
+from contextlib import contextmanager
 from functools import lru_cache
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.symbolic.graph import UNARY
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from types import ModuleType
 
     from flint import acb, arb
@@ -50,6 +51,18 @@ def flint() -> ModuleType:
         msg = "proofs need the package python-flint: pip install 'racs-bif[proof]'"
         raise UsageError(msg) from error
     return package
+
+
+@contextmanager
+def working_precision() -> Iterator[None]:
+    """Compute with `BITS` bits in the block, and with what there was before after it."""
+    context = flint().ctx
+    before = context.prec
+    context.prec = BITS
+    try:
+        yield
+    finally:
+        context.prec = before
 
 
 @lru_cache(maxsize=4096)
@@ -112,12 +125,12 @@ class Ball:
 
     def __lt__(self, other: Ball | float) -> bool:
         """Decide whether all of it is less."""
-        one, two = self.ball, _raw(other)
+        one, two = _real(self), _real(other)
         return _decided(one < two, one >= two)
 
     def __le__(self, other: Ball | float) -> bool:
         """Decide whether all of it is at most the other."""
-        one, two = self.ball, _raw(other)
+        one, two = _real(self), _real(other)
         return _decided(one <= two, one > two)
 
     def __gt__(self, other: Ball | float) -> bool:
@@ -132,7 +145,7 @@ class Ball:
         """Decide whether both are the same single number."""
         if not isinstance(other, Ball | float | int):
             return NotImplemented
-        one, two = self.ball, _raw(other)
+        one, two = _real(self), _real(other)
         return _decided(one == two, not one.overlaps(two))
 
     def __ne__(self, other: object) -> bool:
@@ -146,6 +159,10 @@ def _raw(value: Ball | float) -> Number:
     return value.ball if isinstance(value, Ball) else _constant(float(value))
 
 
+def _real(value: Ball | float) -> arb:
+    return cast("arb", _raw(value))
+
+
 def _decided(yes: object, no: object) -> bool:
     if bool(yes) == bool(no):
         msg = "a condition in the equations holds in one part of the box only"
@@ -157,7 +174,7 @@ def _unary(name: str) -> Callable[[Ball | float], Ball]:
     method = {"fabs": "__abs__", "sign": "sgn"}.get(name, name)
 
     def function(x: Ball | float) -> Ball:
-        raw = _raw(x)
+        raw = _real(x)
         if name == "sign":
             _decided(raw == 0 or raw > 0 or raw < 0, no=False)
         return Ball(getattr(raw, method)())

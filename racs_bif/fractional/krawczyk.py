@@ -1,9 +1,10 @@
 """Proofs that exactly one zero of a system of equations lies in a box, by Krawczyk's operator.
 
 For a box Z with centre c and any matrix Y, every zero in Z lies in
-``K(Z) = c - Y f(c) + (I - Y f'(Z)) (Z - c)``. If K(Z) lies in the interior of Z there is exactly one
-zero in Z, and f' is regular there; if K(Z) and Z are apart there is none (R. Krawczyk, Computing 4,
-1969; A. Neumaier, *Interval Methods for Systems of Equations*, Cambridge 1990, section 5.1).
+``K(Z) = c - Y f(c) + (I - Y f'(Z)) (Z - c)``. If K(Z) lies in the interior of Z there is exactly
+one zero in Z, and f' is regular there; if K(Z) and Z are apart there is none (R. Krawczyk,
+Computing 4, 1969; A. Neumaier, *Interval Methods for Systems of Equations*, Cambridge 1990,
+section 5.1).
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.intervals import BITS, UnboundedError, flint
+from racs_bif.fractional.intervals import UnboundedError, flint, working_precision
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -112,7 +113,7 @@ def prove(equations: Equations, what: str) -> Box:
     ConvergenceError
         If nothing could be proved.
     """
-    with flint().ctx.workprec(BITS):
+    with working_precision():
         return _prove(equations, what)
 
 

@@ -1,9 +1,9 @@
 """Hopf points and folds of the exact model as systems that an interval proof can handle.
 
 Unknowns are the equilibrium X, the parameter and, at a Hopf point, omega. That Delta(i omega) is
-singular is one complex equation g = 0, g from the bordered matrix: there is no null vector among the
-unknowns, so that a proof covers every Hopf point whose equilibrium, parameter and frequency lie in
-the box. The Jacobian is regular at the zero; so the root i omega is simple and crosses the
+singular is one complex equation g = 0, g from the bordered matrix: there is no null vector among
+the unknowns, so that a proof covers every Hopf point whose equilibrium, parameter and frequency lie
+in the box. The Jacobian is regular at the zero; so the root i omega is simple and crosses the
 imaginary axis with a speed that is not zero, or the fold is quadratic.
 """
 
@@ -34,9 +34,7 @@ _LEAST_SHARE = 1e-2
 _LEAST_VALUE = 1e-3
 
 
-def prove_hopf(
-    model: ExactModel, path: CompiledPath, X: Array, value: float, omega: float
-) -> Box:
+def prove_hopf(model: ExactModel, path: CompiledPath, X: Array, value: float, omega: float) -> Box:
     """Prove that exactly one Hopf point lies in a box around an approximate one.
 
     Parameters

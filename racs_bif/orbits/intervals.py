@@ -111,7 +111,8 @@ class BorderedIntervals:
         equations, g = self._equations, self._equations.gauss
         moved = np.zeros((*stages.shape[:2], stages.shape[-1]))
         active = stages.any(axis=(1, 2, 3))
-        moved[active] = equations.at_ends(equations.stages.solve(stages[active]))
+        if active.any():
+            moved[active] = equations.at_ends(equations.stages.solve(stages[active]))
         border = border - _products(self._adjoint, stages)
         points, unknowns = self._ring.solve(np.moveaxis(moved, 0, -1), border)
         starts = np.ascontiguousarray(np.moveaxis(points, -1, 0))

@@ -17,7 +17,7 @@ from racs_bif.orbits.stages import Stages
 
 if TYPE_CHECKING:
     from racs_bif.orbits.gauss import Gauss
-    from racs_bif.symbolic.field import Array
+    from racs_bif.symbolic.field import Array, Vectors
 
 Complex = NDArray[np.complex128]
 
@@ -76,8 +76,8 @@ class _Side:
     out: Array  # (2K, n): modes to coordinates
     first: Complex  # (m, m): Gauss points to their modes
     last: Complex  # (m, m): and back
-    probe: Array  # (2K, r): modes to what the correction sees
-    inject: Array  # (k, 2K): what the correction adds to the modes
+    probe: Complex  # (K, r): modes to what the correction sees
+    inject: Complex  # (k, K): what the correction adds to the modes
     correction: Array  # (N, m k, m r)
 
 
@@ -116,7 +116,9 @@ class LowRankStages(Stages):
         self._gauss, self._basis, self._tau = coefficients, basis, tau
         g = coefficients
         poles = tau[:, None, None] * basis.values
-        self._resolvent: Complex = 1.0 / (g.eigenvalues[:, None] - poles)
+        by_interval: Complex = 1.0 / (g.eigenvalues[:, None] - poles)  # (N, m, K)
+        self._by_interval = by_interval
+        self._resolvent = np.ascontiguousarray(np.moveaxis(by_interval, 1, 0))[:, None]
         self._seen: Complex = right @ basis.vectors  # (r, K)
         self._added: Complex = basis.inverse @ left  # (K, k)
         correction = self._correct(varying)
@@ -125,8 +127,8 @@ class LowRankStages(Stages):
             out=_out(basis.vectors.T),
             first=g.left,
             last=g.right,
-            probe=_out(self._seen.T),
-            inject=_into(self._added.T),
+            probe=self._seen.T,
+            inject=self._added.T,
             correction=correction,
         )
         # the transpose: modes and their inverse change places, pairs counted on the way out
@@ -136,8 +138,8 @@ class LowRankStages(Stages):
             out=_out(basis.inverse * pairs[:, None]),
             first=g.right.T,
             last=g.left.T,
-            probe=_out(self._added * pairs[:, None]),
-            inject=_into(self._seen / pairs),
+            probe=self._added * pairs[:, None],
+            inject=self._seen / pairs,
             correction=np.swapaxes(correction, 1, 2),
         )
 
@@ -146,7 +148,7 @@ class LowRankStages(Stages):
         count, degree, k, r = varying.shape
         g = self._gauss
         table = (g.right[:, None, :] * g.left.T[None, :, :]).reshape(-1, degree)
-        kernels = np.ascontiguousarray(table @ self._resolvent)  # (N, m m, K)
+        kernels = np.ascontiguousarray(table @ self._by_interval)  # (N, m m, K)
         products = self._seen[:, None, :] * self._added.T[None]  # (r, k, K)
         small = _real(kernels) @ _out(products.reshape(r * k, -1).T)
         small = self._tau[:, None, None] * small
@@ -164,11 +166,11 @@ class LowRankStages(Stages):
         count = len(tau)
         starts = g.left @ g.row_sums.astype(complex)
         ends = g.end.astype(complex) @ g.right
-        growth = g.end_start + (starts * ends) @ self._resolvent  # (N, K)
+        growth = g.end_start + (starts * ends) @ self._by_interval  # (N, K)
         constant = _real(growth[:, None, :] * basis.vectors) @ _out(basis.inverse)
-        sees = (g.right * starts) @ self._resolvent  # (N, m, K)
+        sees = (g.right * starts) @ self._by_interval  # (N, m, K)
         seen = _real(sees[:, :, None] * self._seen) @ _out(basis.inverse)
-        adds = (g.left.T * ends) @ self._resolvent
+        adds = (g.left.T * ends) @ self._by_interval
         added = _real(adds[:, :, None] * self._added.T) @ _out(basis.vectors.T)
         size = constant.shape[-1]
         seen = seen.reshape(count, -1, size)
@@ -185,18 +187,22 @@ class LowRankStages(Stages):
         return self._apply(rhs, self._backward)
 
     def _apply(self, rhs: Array, side: _Side) -> Array:
-        modal = self._resolve(_complex(rhs @ side.into), side)
-        seen = _real(modal) @ side.probe  # (c, N, m, r)
-        count = seen.shape[:2]
-        correction = side.correction @ seen.reshape(*count, -1, 1)
-        added = _complex(correction.reshape(*seen.shape[:3], -1) @ side.inject)
-        added *= self._tau[:, None, None]
-        modal += self._resolve(added, side)
-        return np.asarray(_real(modal) @ side.out)
+        # Gauss points first: mixing them is then one product of a small and a long matrix
+        modal = _complex(np.moveaxis(rhs, 2, 0) @ side.into)
+        modal = _mixed(side.first, modal) * self._resolvent
+        seen = _mixed(side.last, modal @ side.probe).real
+        moved = np.moveaxis(seen, 0, 2)
+        flat = moved.reshape(*moved.shape[:2], -1, 1)
+        added = (self._tau[:, None, None] * side.correction) @ flat
+        added = np.moveaxis(added.reshape(*moved.shape[:3], -1), 2, 0)
+        modal += (_mixed(side.first, added) @ side.inject) * self._resolvent
+        values = _real(_mixed(side.last, modal)) @ side.out
+        return np.ascontiguousarray(np.moveaxis(values, 0, 2))
 
-    def _resolve(self, modal: Complex, side: _Side) -> Complex:
-        """Return the constant part's inverse times modal values (c, N, m, K)."""
-        return np.asarray(side.last @ (self._resolvent * (side.first @ modal)))
+
+def _mixed(matrix: Complex, values: Vectors) -> Complex:
+    """Return a matrix (m, m) times values (m, ...)."""
+    return np.asarray((matrix @ values.reshape(len(values), -1)).reshape(values.shape))
 
 
 def _into(matrix: Complex) -> Array:

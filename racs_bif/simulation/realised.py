@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -125,21 +126,24 @@ class RealisedStepper:
                 progress(t)
             return self.field.f(x, parameters(t))
 
-        found = solve_ivp(
-            rate,
-            (low, high),
-            x,
-            method=self.method,
-            t_eval=at,
-            jac=lambda t, x: self.field.f_x(x, parameters(t)),
-            rtol=self.tolerance,
-            atol=_SMALL * self.tolerance,
-        )
-        whole = np.all(np.isfinite(found.y))
-        if found.success and whole:
-            return found.y, ""
-        kept = np.all(np.isfinite(found.y), axis=0).cumprod().astype(bool)
-        return found.y[:, kept], f"The integrator gave up at t = {at[max(kept.sum() - 1, 0)]:g} s."
+        def jacobian(t: float, x: Array) -> Array:
+            return self.field.f_x(x, parameters(t))
+
+        settings = {"rtol": self.tolerance, "atol": _SMALL * self.tolerance, "jac": jacobian}
+        kept, reached = np.empty((len(x), 0)), low
+        if np.all(np.isfinite(self.field.f(x, parameters(low)))):
+            # What overflows on the way is refused by the integrator, which says so by a warning.
+            with np.errstate(all="ignore"), warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                try:
+                    found = solve_ivp(rate, (low, high), x, self.method, at, **settings)
+                    kept = found.y[:, np.all(np.isfinite(found.y), axis=0)]
+                except ValueError:  # a matrix that is not finite
+                    pass
+            if kept.shape[1] == len(at):
+                return kept, ""
+            reached = at[kept.shape[1] - 1] if kept.shape[1] else low
+        return kept, f"The integrator gave up after t = {reached:g} s."
 
     def _core_states(self, times: Array, states: Array) -> Array:
         """Return states and outputs of elements (n + ne, nt)."""

@@ -7,7 +7,8 @@ chapter 3).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
 from racs_bif.symbolic.graph import COMPARISONS, LOGIC, Graph
@@ -40,6 +41,49 @@ def tangent(graph: Graph, outputs: Sequence[int], seeds: Mapping[int, int]) -> l
         else:
             dots[node] = _RULES[name](graph, node, args, [dots[a] for a in args])
     return [dots[node] for node in outputs]
+
+
+def columns(
+    graph: Graph, outputs: Sequence[int], inputs: Sequence[int]
+) -> Iterator[tuple[int, int, int]]:
+    """Differentiate `outputs` by each of the input nodes `inputs`.
+
+    For each input only what depends on it is visited, so that the work grows with the number of
+    entries that are not zero.
+
+    Yields
+    ------
+    (int, int, int)
+        Row, column and node of an entry that is not zero, column by column.
+    """
+    nodes = graph.reachable(outputs)
+    users: dict[int, list[int]] = defaultdict(list)
+    for node in nodes:
+        for argument in set(graph.ops[node][1]):
+            users[argument].append(node)
+    rows: dict[int, list[int]] = defaultdict(list)
+    for row, node in enumerate(outputs):
+        rows[node].append(row)
+    for column, source in enumerate(inputs):
+        dots = {source: graph.one}
+        for node in _above(users, source):
+            name, args, _ = graph.ops[node]
+            parts = [dots.get(a, graph.zero) for a in args]
+            still = name in COMPARISONS or name in LOGIC or all(d == graph.zero for d in parts)
+            dots[node] = graph.zero if still else _RULES[name](graph, node, args, parts)
+        found = ((row, dot) for node, dot in dots.items() for row in rows.get(node, ()))
+        yield from ((row, column, dot) for row, dot in sorted(found) if dot != graph.zero)
+
+
+def _above(users: Mapping[int, Sequence[int]], source: int) -> list[int]:
+    """Return the nodes that depend on one, arguments before their users, itself left out."""
+    stack, seen = [source], {source}
+    while stack:
+        for user in users.get(stack.pop(), ()):
+            if user not in seen:
+                seen.add(user)
+                stack.append(user)
+    return sorted(seen - {source})
 
 
 Rule = Callable[[Graph, int, tuple[int, ...], list[int]], int]

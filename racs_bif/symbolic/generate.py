@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from racs_bif.errors import ModelError
 from racs_bif.symbolic.emit import Function, emit
-from racs_bif.symbolic.forward import tangent
+from racs_bif.symbolic.forward import columns, tangent
 from racs_bif.symbolic.graph import LOGIC, UNARY, Graph
 from racs_bif.symbolic.laws import PowerSum, read_law
 from racs_bif.symbolic.lower import Lowering
@@ -153,23 +153,15 @@ class _Generator:
         return tangent(self.graph, outputs, dict(zip(along, by, strict=True)))
 
     def _jacobian(self) -> _Pattern:
-        g = self.graph
-        fixed: list[tuple[int, int, int]] = []
-        varying: list[tuple[int, int, int]] = []
-        depends = self._state_dependent
-        for column, node in enumerate(self.x):
-            for row, entry in enumerate(tangent(g, self.core, {node: g.one})):
-                if entry != g.zero:
-                    (varying if depends(entry) else fixed).append((row, column, entry))
+        entries = list(columns(self.graph, self.core, self.x))
+        moving = self.graph.dependent(self.x)
+        fixed = [entry for entry in entries if entry[2] not in moving]
+        varying = [entry for entry in entries if entry[2] in moving]
         functions = [
             self._function("jacobian_fixed", {}, [e for *_, e in fixed]),
             self._function("jacobian_varying", {"x": self.x}, [e for *_, e in varying]),
         ]
         return _Pattern(functions, [f[:2] for f in fixed], [v[:2] for v in varying])
-
-    def _state_dependent(self, node: int) -> bool:
-        states = set(self.x)
-        return any(n in states for n in self.graph.reachable([node]))
 
     def _parameter_functions(self) -> list[str]:
         dp = self._directions("dp", self.parameters)

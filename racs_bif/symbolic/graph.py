@@ -224,3 +224,11 @@ class Graph:
                 seen.add(node)
                 stack.extend(self.ops[node][1])
         return sorted(seen)
+
+    def dependent(self, inputs: Iterable[int]) -> set[int]:
+        """Return all nodes that depend on any of `inputs`."""
+        found = set(inputs)
+        for node, (_, args, _) in enumerate(self.ops):  # arguments come before their users
+            if not found.isdisjoint(args):
+                found.add(node)
+        return found

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from racs_bif.errors import ConvergenceError, UsageError, nearest
-from racs_bif.fractional.certificates import Place, Resolved, resolve
+from racs_bif.fractional.certificates import Resolved, resolve
 from racs_bif.fractional.intervals import flint
 from racs_bif.fractional.proofs import OMEGA, prove_fold, prove_hopf
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.branch import Branch
 from racs_bif.results.certificate import Bounds, Certificate, Check
-from racs_bif.results.diagram import Diagram
 from racs_bif.results.files import load
+from racs_bif.results.history import TimeHistory
 from racs_bif.verbs.completeness import complete
 from racs_bif.verbs.rebuild import rebuild
 from racs_bif.verbs.subject import Subject
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from racs_bif.fractional.krawczyk import Box
     from racs_bif.fractional.system import System
+    from racs_bif.results.diagram import Diagram
     from racs_bif.results.special import SpecialPoint
     from racs_bif.symbolic.model import Model
 
@@ -115,9 +116,10 @@ def certify(
 
 
 def _branches(result: Branch | Diagram | Sequence[Branch] | str | Path) -> list[Branch]:
-    if isinstance(result, str | Path):
-        result = load(result)
-    return [result] if isinstance(result, Branch) else list(result)
+    found = load(result) if isinstance(result, str | Path) else result
+    if isinstance(found, Branch):
+        return [found]
+    return [] if isinstance(found, TimeHistory) else list(found)
 
 
 def _certified(subject: Subject, strength: str, tolerance: float) -> Iterator[Check]:
@@ -163,9 +165,7 @@ def _solved(
     numbers = {"value": exact.value, "shift": exact.shift, "correction": exact.correction}
     numbers |= {"omega": exact.omega} if omega else {}
     interval = (min(place.value, exact.value), max(place.value, exact.value))
-    check = subject.check(
-        point.name, "newton", interval, finding, holds=True, numbers=numbers
-    )
+    check = subject.check(point.name, "newton", interval, finding, holds=True, numbers=numbers)
     return check, exact
 
 
@@ -191,8 +191,8 @@ def _check_reported(point: SpecialPoint, exact: Resolved, name: str) -> None:
     ):
         return
     msg = (
-        f"the result says exact {name} = {reported:.9g}, omega = {point.exact.omega:.9g} rad/s, but "
-        f"the exact point is at {name} = {exact.value:.9g}, omega = {exact.omega:.9g} rad/s"
+        f"reported exact {name} = {reported:.9g}, omega = {point.exact.omega:.9g} rad/s, but the "
+        f"exact point is at {name} = {exact.value:.9g}, omega = {exact.omega:.9g} rad/s"
     )
     raise ConvergenceError(msg)
 

@@ -148,14 +148,10 @@ def _sides(
         holds, words = False, [str(error)]
     interval = min(values), max(values)
     finding = "; ".join(words) or "no other point on the branch"
-    return subject.check(
-        point.name, "complete", interval, finding, holds=holds, numbers=numbers
-    )
+    return subject.check(point.name, "complete", interval, finding, holds=holds, numbers=numbers)
 
 
-def _aside(
-    subject: Subject, k: int, neighbour: int, resolved: Mapping[str, Resolved]
-) -> Place:
+def _aside(subject: Subject, k: int, neighbour: int, resolved: Mapping[str, Resolved]) -> Place:
     """Return a place near point k towards a neighbour, the neighbour if that is within a shift."""
     end = subject.place(neighbour)
     place = beside(subject.exact, subject.path, subject.place(k), end)

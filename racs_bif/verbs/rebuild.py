@@ -70,9 +70,7 @@ def _system(branch: Branch, model: Model | System | str | None) -> System:
             "equations; give the model"
         )
         raise UsageError(msg)
-    return system_at(
-        name, info.parameters, variant=info.variant, realisation=_realisation(info)
-    )
+    return system_at(name, info.parameters, variant=info.variant, realisation=_realisation(info))
 
 
 def _with_values(system: System, info: SystemInfo) -> System:

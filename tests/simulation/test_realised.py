@@ -4,6 +4,7 @@ import pytest
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.shelf.load import load_model, system_of
+from racs_bif.simulation.exact import INTERRUPTED
 from racs_bif.simulation.inputs import Inputs
 from racs_bif.simulation.realised import RealisedStepper
 from racs_bif.simulation.start import begin
@@ -48,26 +49,31 @@ def test_outputs_of_elements_hold_their_feedthrough(march):
         "through", {"x": "-x"}, parameters={}, elements=[("w", "x", "(1 + 2*s)/(1 + s)")]
     )
     done = march(system_of(model), 1.0, 20, "lsoda", initial={"x": 1.0}, history="constant")
-    # W - 1 = Z (X - 1) / s ...: w = exp(-t) (1 + t) + ... checked by its differential equation
-    t, (x, w) = done.times, done.X
-    assert w == pytest.approx(1.0 + (2.0 * (x - 1.0)) - (1.0 - np.exp(-t) - t * np.exp(-t)) * -1.0)
+    # Z of exp(-t) - 1, by partial fractions; the realisation is good to 1e-4 here
+    t = done.times
+    assert done.X[1] == pytest.approx((1.0 - t) * np.exp(-t), abs=1e-4)
 
 
-def test_what_blows_up_ends_with_what_there_is():
+@pytest.mark.parametrize("method", ["lsoda", "radau"])
+def test_what_blows_up_ends_with_what_there_is(method):
     system = system_of(model_from_strings("blow", {"x": "1 + x**2"}, parameters={}))
     inputs = Inputs(system=system, duration=2.0)
-    stepper = RealisedStepper(system, begin(system, {}, "rest"), inputs, 200, "radau")
+    stepper = RealisedStepper(system, begin(system, {}, "rest"), inputs, 200, method)
     done = stepper.run()
     assert "gave up" in done.stopped
     assert 1.4 < done.times[-1] < 1.6
+    with pytest.raises(ConvergenceError, match="gave up.*Nothing was integrated"):
+        RealisedStepper(system, begin(system, {"x": 1e200}, "rest"), inputs, 9, method).run()
 
-    def stop(_time):
-        raise KeyboardInterrupt
 
-    stepper = RealisedStepper(
-        system, begin(system, {"x": 1.0}, "rest"), Inputs(system=system, duration=0.7), 9
-    )
-    stepper.field = None  # nothing can be evaluated: the first call fails before any sample
-    with pytest.raises(AttributeError):
-        stepper.run(stop)
-    assert ConvergenceError is not None
+def test_an_interruption_keeps_whole_pieces(oscillator):
+    def stop(time):
+        if time > 60.0:
+            raise KeyboardInterrupt
+
+    inputs = Inputs(system=oscillator, duration=100.0, signals={"f": {50.0: 1.0}})
+    start = begin(oscillator, {"x": 1.0}, "rest")
+    done = RealisedStepper(oscillator, start, inputs, 1000, tolerance=1e-10).run(stop)
+    assert done.stopped == INTERRUPTED
+    assert done.times[-1] == 50.0
+    assert done.X[0] == pytest.approx(np.cos(done.times), abs=1e-6)

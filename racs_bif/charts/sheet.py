@@ -1,0 +1,170 @@
+"""Exact equilibria at many parameter sets at once, continued from place to place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from racs_bif.charts.plane import Plane
+    from racs_bif.symbolic.field import Array
+
+_ITERATIONS = 8
+_CONTRACTION = 0.25
+_TOLERANCE = 1e-11
+_SMALL = 1e-7
+_SHORTEST = 2.0**-10
+_STEPS = 200
+
+
+@dataclass(frozen=True)
+class Laws:
+    """Numbers of one transfer law at N parameter sets.
+
+    Parameters
+    ----------
+    numerator, denominator : (array (a, N), array (a, N))
+        Coefficients and exponents, the least exponent of both being zero.
+    """
+
+    numerator: tuple[Array, Array]
+    denominator: tuple[Array, Array]
+
+
+class Sheet:
+    """The equilibria over a plane that belong together: each is continued from another.
+
+    Parameters
+    ----------
+    plane : Plane
+        Where.
+    """
+
+    def __init__(self, plane: Plane) -> None:
+        self.plane = plane
+        self.compiled = plane.system.compiled
+        self.ny, self.size = len(self.compiled.states), self.compiled.size
+        fixed = np.array(self.compiled.meta["fixed"], dtype=int).reshape(-1, 2)
+        self._fixed = fixed[:, 0], fixed[:, 1]
+
+    def laws(self, P: Array) -> tuple[Laws, ...]:
+        """Return the laws of all elements at base parameters P (np, N)."""
+        if not self.compiled.elements:
+            return ()
+        numbers = self.compiled.kernel("laws")(self.compiled.padded(P))
+        if numbers.ndim == 1:
+            numbers = np.repeat(numbers[:, None], P.shape[1], axis=1)
+        laws, start = [], 0
+        for a, b in self.compiled.meta["law_sizes"]:
+            part = numbers[start : start + 2 * (a + b)]
+            start += 2 * (a + b)
+            n, n_at, d, d_at = np.split(part, [a, 2 * a, 2 * a + b])
+            lowest = np.minimum(n_at.min(axis=0), d_at.min(axis=0))
+            laws.append(Laws((n, n_at - lowest), (d, d_at - lowest)))
+        return tuple(laws)
+
+    def core(self, X: Array, P: Array) -> Array:
+        """Return the core's Jacobian (N, size, size) at states X (size, N)."""
+        compiled, padded = self.compiled, self.compiled.padded(P)
+        core = np.zeros((X.shape[1], self.size, self.size))
+        core[:, *self._fixed] = _wide(compiled.kernel("jacobian_fixed")(padded), X).T
+        rows, columns = compiled.varying_at
+        if len(rows):
+            core[:, rows, columns] = _wide(compiled.varying_jacobian(X, padded), X).T
+        return core
+
+    def equations(self, X: Array, P: Array) -> tuple[Array, Array]:
+        """Return residual (size, N) and Jacobian (N, size, size) of the equilibrium equations."""
+        value = _wide(self.compiled.core(X, self.compiled.padded(P)), X)
+        jacobian = self.core(X, P)
+        for j, law in enumerate(self.laws(P)):
+            row = self.ny + j
+            n, d = _static(*law.numerator), _static(*law.denominator)
+            value[row] = n * value[row] - d * X[row]
+            jacobian[:, row] *= n[:, None]
+            jacobian[:, row, row] -= d
+        return value, jacobian
+
+    def newton(self, X: Array, P: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Solve near X (size, N), where Newton's method contracts at once.
+
+        Returns
+        -------
+        (array (size, N), bool array (N,))
+            Equilibria, and where they were found; elsewhere the numbers mean nothing.
+        """
+        X = np.array(X, dtype=float)
+        found = np.zeros(X.shape[1], dtype=bool)
+        moving, last = np.arange(X.shape[1]), np.full(X.shape[1], np.inf)
+        with np.errstate(all="ignore"):
+            for iteration in range(_ITERATIONS):
+                step = self._step(X[:, moving], P[:, moving])
+                X[:, moving] -= step
+                scale = 1.0 + np.abs(X[:, moving]).max(axis=0)
+                size = np.abs(step).max(axis=0) / scale
+                good = size <= _TOLERANCE
+                found[moving[good]] = True
+                contracts = (size <= _CONTRACTION * last[moving]) | (size <= _SMALL)
+                last[moving] = size
+                moving = moving[~good & contracts & np.isfinite(size)]
+                if not len(moving):
+                    break
+                del iteration
+        return X, found
+
+    def _step(self, X: Array, P: Array) -> Array:
+        value, jacobian = self.equations(X, P)
+        bad = ~(np.isfinite(value).all(axis=0) & np.isfinite(jacobian).all(axis=(1, 2)))
+        jacobian[bad] = np.eye(self.size)
+        # A matrix singular to the last digit stops the whole batch: nudge it, Newton rejects it.
+        try:
+            step = np.linalg.solve(jacobian, value.T[:, :, None])[:, :, 0].T
+        except np.linalg.LinAlgError:
+            pivots = np.abs(np.linalg.det(jacobian)) == 0.0
+            jacobian[pivots] = np.eye(self.size)
+            bad |= pivots
+            step = np.linalg.solve(jacobian, value.T[:, :, None])[:, :, 0].T
+        step[:, bad] = np.nan
+        return np.asarray(step)
+
+    def follow(self, X: Array, start: Array, end: Array) -> tuple[Array, Array]:
+        """Continue equilibria along straight lines.
+
+        Parameters
+        ----------
+        X : array (size, N)
+            Equilibria at the starts.
+        start, end : array (2, N)
+            Places in the unit square.
+
+        Returns
+        -------
+        (array (size, N), array (N,))
+            Equilibria, and how far they came: 1 at the end.
+        """
+        X = np.array(X, dtype=float)
+        reached, step = np.zeros(X.shape[1]), np.ones(X.shape[1])
+        for _ in range(_STEPS):
+            moving = np.flatnonzero((reached < 1.0) & (step >= _SHORTEST))
+            if not len(moving):
+                break
+            goal = np.minimum(reached[moving] + step[moving], 1.0)
+            at = (1.0 - goal) * start[:, moving] + goal * end[:, moving]
+            tried, found = self.newton(X[:, moving], self.plane.vectors(at))
+            done = moving[found]
+            X[:, done], reached[done] = tried[:, found], goal[found]
+            step[done] *= 2.0
+            step[moving[~found]] *= 0.5
+        return X, reached
+
+
+def _static(coefficients: Array, exponents: Array) -> Array:
+    return np.asarray(np.where(exponents == 0.0, coefficients, 0.0).sum(axis=0))
+
+
+def _wide(values: Array, X: Array) -> Array:
+    """Return rows with a column for each point, also where they are the same at all."""
+    return values if values.ndim == 2 else np.repeat(values[:, None], X.shape[1], axis=1)
