@@ -28,6 +28,7 @@ _AGREEMENT = 0.25
 _ON_CONTOUR = 1e-10
 _TRUSTED = 0.05
 _FEW = 1 << 14
+_MANY = 1 << 11
 _QUARTER = 0.5 * np.pi
 
 Places = NDArray[np.int64]
@@ -56,26 +57,76 @@ class Counts:
     evaluations: NDArray[np.int64]
 
 
-@dataclass
+@dataclass(frozen=True)
+class _Steps:
+    """Steps along contours: whose, and x, t = log s, log det Delta and its rate at both ends."""
+
+    owner: Places
+    left: tuple[Complex, ...]
+    right: tuple[Complex, ...]
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.owner)
+
+    def take(self, which: NDArray[np.bool_]) -> _Steps:
+        """Return some of them."""
+        return _Steps(
+            self.owner[which],
+            tuple(a[which] for a in self.left),
+            tuple(a[which] for a in self.right),
+        )
+
+    def split(self, middle: tuple[Complex, ...]) -> _Steps:
+        """Return twice as many, given what is in the middle of each."""
+        left = tuple(map(np.concatenate, zip(self.left, middle, strict=True)))
+        right = tuple(map(np.concatenate, zip(middle, self.right, strict=True)))
+        return _Steps(np.concatenate([self.owner, self.owner]), left, right)
+
+
 class _Tally:
-    """Sums over the contour as it is followed, one number for each parameter set."""
+    """What is summed up along the contours of N sums."""
 
-    phase: Array
-    margin: Array
-    omega: Array
-    evaluations: NDArray[np.int64]
-    lost: NDArray[np.bool_]
+    def __init__(self, sums: Sums) -> None:
+        count = len(sums)
+        self.sums = sums
+        self.phase, self.omega = np.zeros(count), np.zeros(count)
+        self.margin = np.full(count, np.inf)
+        self.evaluations = np.zeros(count, dtype=np.int64)
+        self.lost = np.zeros(count, dtype=bool)
 
-    def see(self, cells: Places, t: Complex, sizes: Array) -> None:
-        """Note determinants of relative sizes at places t = log s."""
-        np.add.at(self.evaluations, cells, 1)
+    def at(self, owner: Places, x: Array, t: Complex) -> tuple[Complex, ...]:
+        """Return x, t, log det Delta and its derivative at places t of the owners' contours."""
+        log, rate = np.empty(len(x), dtype=complex), np.empty(len(x), dtype=complex)
+        sizes = np.empty(len(x))
+        for k in range(0, len(x), _FEW):
+            part = slice(k, k + _FEW)
+            value, slope, scale = self.sums.take(owner[part]).evaluate(t[part])
+            sizes[part] = np.abs(value)
+            log[part], rate[part] = _logarithm(value, slope, scale)
+        np.add.at(self.evaluations, owner, 1)
+        # Of several places of one owner the last one written is the smallest.
         order = np.argsort(-sizes, kind="stable")
-        cells, t, sizes = cells[order], t[order], sizes[order]
-        # The last one written for a cell is its smallest.
         least, where = np.full(len(self.margin), np.inf), np.zeros(len(self.margin))
-        least[cells], where[cells] = sizes, (np.exp(t)).imag
+        least[owner[order]], where[owner[order]] = sizes[order], np.exp(t[order]).imag
+        self.see(least, where)
+        return x.astype(complex), t, log, rate
+
+    def see(self, least: Array, where: Array) -> None:
+        """Note the least size (N,) of determinants and the frequency there."""
         better = least < self.margin
         self.margin[better], self.omega[better] = least[better], where[better]
+
+    def follow(self, steps: _Steps, contour: Callable[[Places, Array], Complex]) -> None:
+        """Add up the changes of the phase, halving steps until they can be trusted."""
+        while len(steps):
+            good, change = _judge(steps)
+            np.add.at(self.phase, steps.owner[good], change[good])
+            narrow = ~good & (np.abs(steps.right[1] - steps.left[1]) < _ON_CONTOUR)
+            self.lost[steps.owner[narrow]] = True
+            steps = steps.take(~good & ~self.lost[steps.owner])
+            x = 0.5 * (steps.left[0] + steps.right[0]).real
+            steps = steps.split(self.at(steps.owner, x, contour(steps.owner, x)))
 
 
 def count_right(sums: Sums, above: Array | float = 0.0) -> Counts:
@@ -88,64 +139,111 @@ def count_right(sums: Sums, above: Array | float = 0.0) -> Counts:
     above : float or array (N,)
         The lines. Left of zero the branch cut is left out.
     """
-    count = len(sums)
-    line = np.broadcast_to(np.asarray(above, dtype=float), (count,))
-    tally = _Tally(
-        np.zeros(count),
-        np.full(count, np.inf),
-        np.zeros(count),
-        np.zeros(count, dtype=np.int64),
-        ~np.isfinite(sums.coefficients).all(axis=0),
+    parts = [_count(sums.take(np.arange(k, min(k + _MANY, len(sums)))), _part(above, k))
+             for k in range(0, len(sums), _MANY)]
+    return Counts(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def _part(above: Array | float, k: int) -> Array | float:
+    return above[k : k + _MANY] if isinstance(above, np.ndarray) else above
+
+
+def _count(sums: Sums, above: Array | float) -> tuple[Array, ...]:
+    line = np.broadcast_to(np.asarray(above, dtype=float), (len(sums),))
+    good = np.flatnonzero(np.isfinite(sums.coefficients).all(axis=0) & sums.coefficients.any(axis=0))
+    columns = (
+        np.full(len(sums), UNKNOWN, dtype=np.int64),
+        np.zeros(len(sums)),
+        np.zeros(len(sums)),
+        np.zeros(len(sums), dtype=np.int64),
     )
-    good = np.flatnonzero(~tally.lost)
-    unstable = np.full(count, UNKNOWN, dtype=np.int64)
     if len(good):
-        turns = _turns(sums, line, good, tally)
+        tally = _Tally(sums.take(good))
+        turns = _on_axis(tally) if not line.any() else _on_lines(tally, line[good])
         number = np.round(turns)
-        sure = (np.abs(turns - number) <= _TRUSTED) & (number >= 0.0) & ~tally.lost[good]
-        unstable[good[sure]] = number[sure].astype(np.int64)
-    return Counts(unstable, tally.margin, tally.omega, tally.evaluations)
+        sure = (np.abs(turns - number) <= _TRUSTED) & (number >= 0.0) & ~tally.lost
+        columns[0][good] = np.where(sure, number, UNKNOWN).astype(np.int64)
+        columns[1][good], columns[2][good] = tally.margin, tally.omega
+        columns[3][good] = tally.evaluations
+    return columns
 
 
-def _turns(sums: Sums, line: Array, cells: Places, tally: _Tally) -> Array:
-    """Return the change of the phase over pi along the upper half of the contours."""
-    used = sums.take(cells)
-    inner, outer = used.radii()
-    above = line[cells]
-    inside = np.abs(above) < np.exp(inner)
-    outer = np.where(np.abs(above) >= np.exp(outer), np.log(np.abs(above) + 1e-300) + 1.0, outer)
-    size, R, r = np.abs(above), np.exp(outer), np.exp(inner)
-    zero = above == 0.0
-    scale = np.where(zero, 1.0, size)
-    begin = np.where(zero, outer, np.arcsinh(np.sqrt(R**2 - size**2) / scale))
-    bottom = np.sqrt(np.maximum(r**2 - size**2, 0.0))
-    end = np.where(zero, inner, np.arcsinh(bottom / scale))
+def _on_axis(tally: _Tally) -> Array:
+    """Return the change of the phase over pi around the right half plane, its upper half."""
+    sums = tally.sums
+    inner, outer = sums.radii()
+    everyone = np.arange(len(sums))
+
+    def contour(_: Places, x: Array) -> Complex:
+        return np.asarray(x + 1j * _QUARTER)
+
+    if sums.exponents.shape[1] > 1:
+        return _around(tally, (contour, outer, inner), None)
+    # One sweep over places that all share, by products of matrices.
+    top, bottom = float(outer.max()), float(inner.min())
+    x = np.linspace(top, bottom, max(4, int(np.ceil((top - bottom) / _SPACING)) + 1))
+    value, slope, scale = sums.on_ray(x, _QUARTER)
+    sizes = np.abs(value)
+    lowest = sizes.argmin(axis=0)
+    tally.see(sizes[lowest, everyone], np.exp(x[lowest]))
+    tally.evaluations += len(x)
+    log, rate = _logarithm(value, slope, scale)
+    shape = (len(x) - 1, len(sums))
+    owner = np.broadcast_to(everyone, shape).ravel()
+    wide = np.broadcast_to(x[:, None].astype(complex), log.shape)
+    columns = (wide, wide + 1j * _QUARTER, log, rate)
+    left = tuple(c[:-1].reshape(-1) for c in columns)
+    right = tuple(c[1:].reshape(-1) for c in columns)
+    tally.follow(_Steps(owner, left, right), contour)
+    ends = np.full(len(sums), top), np.full(len(sums), bottom)
+    return _closed(tally, *(end + 1j * _QUARTER for end in ends))
+
+
+def _on_lines(tally: _Tally, above: Array) -> Array:
+    """Return the change of the phase over pi around what is right of the lines, its upper half."""
+    inner, outer = tally.sums.radii()
+    size = np.maximum(np.abs(above), 1e-280)
+    outer = np.maximum(outer, np.log(size) + 1.0)
+    begin = np.arcsinh(np.sqrt(np.exp(2.0 * outer) - size**2) / size)
+    end = np.arcsinh(np.sqrt(np.maximum(np.exp(2.0 * inner) - size**2, 0.0)) / size)
 
     def upright(which: Places, x: Array) -> Complex:
-        a = above[which]
-        with np.errstate(over="ignore"):
-            slanted = np.log(a + 1j * scale[which] * np.sinh(np.where(zero[which], 0.0, x)))
-        return np.asarray(np.where(zero[which], x + 1j * _QUARTER, slanted))
+        # On the line's foot left of zero the upper lip of the branch cut is meant.
+        return np.asarray(np.log(above[which] + 1j * np.maximum(size[which] * np.sinh(x), 0.0)))
 
-    def lip(which: Places, x: Array) -> Complex:
-        del which
+    def lip(_: Places, x: Array) -> Complex:
         return np.asarray(x + 1j * np.pi)
 
-    everywhere = np.arange(len(cells))
-    _follow(used, cells, everywhere, upright, begin, end, tally)
-    cut = np.flatnonzero(~inside & (above < 0.0))
-    _follow(used, cells, cut, lip, np.log(scale), inner, tally)
-    top = upright(everywhere, begin)
-    last = upright(everywhere, end)
-    last[cut] = inner[cut] + 1j * np.pi
-    e_high, high, e_low, low = used.leading()
-    phase = tally.phase[cells] + e_high * top.imag + _beyond(used, top, e_high, high)
-    # With a line right of s = 0 the contour ends on the real axis, not at s = 0.
-    closes = inside | (above < 0.0)
-    inwards = e_low * last.imag + _beyond(used, last, e_low, low)
-    phase -= np.where(closes, inwards, 0.0)
-    phase -= np.where(closes, 0.0, 0.0)
-    return np.asarray(phase / np.pi)
+    cut = np.flatnonzero((np.log(size) > inner) & (above < 0.0))
+    return _around(tally, (upright, begin, end), (lip, np.log(size), inner, cut))
+
+
+def _around(
+    tally: _Tally,
+    down: tuple[Callable[[Places, Array], Complex], Array, Array],
+    lip: tuple[Callable[[Places, Array], Complex], Array, Array, Places] | None,
+) -> Array:
+    """Follow the line down, then the lip of the cut where there is one."""
+    contour, begin, end = down
+    everyone = np.arange(len(tally.sums))
+    tally.follow(_divided(tally, everyone, contour, begin, end), contour)
+    last = contour(everyone, end)
+    if lip is not None:
+        along, start, inner, cut = lip
+        tally.follow(_divided(tally, cut, along, start, inner), along)
+        last[cut] = inner[cut] + 1j * np.pi
+    return _closed(tally, contour(everyone, begin), last)
+
+
+def _closed(tally: _Tally, top: Complex, last: Complex) -> Array:
+    """Add the arcs beyond the first and behind the last place t, where one power dominates."""
+    sums = tally.sums
+    e_high, high, e_low, low = sums.leading()
+    phase = tally.phase + e_high * top.imag + _beyond(sums, top, e_high, high)
+    # A line right of s = 0 ends on the real axis, where the determinant is real.
+    arrives = last.imag > 0.0
+    inwards = e_low * last.imag + _beyond(sums, last, e_low, low)
+    return np.asarray((phase - np.where(arrives, inwards, 0.0)) / np.pi)
 
 
 def _beyond(sums: Sums, t: Complex, exponent: Array, place: Places) -> Array:
@@ -155,76 +253,45 @@ def _beyond(sums: Sums, t: Complex, exponent: Array, place: Places) -> Array:
     return np.asarray(np.angle(value * sign * np.exp(-1j * exponent * t.imag)))
 
 
-def _follow(
-    sums: Sums,
-    cells: Places,
+def _divided(
+    tally: _Tally,
     which: Places,
     contour: Callable[[Places, Array], Complex],
     begin: Array,
     end: Array,
-    tally: _Tally,
-) -> None:
-    """Add to the tally the change of phase along a piece of the contour, x from begin to end."""
-    if not len(which):
-        return
-    length = np.abs(end - begin)[which]
-    steps = np.maximum(3, np.ceil(length / _SPACING)).astype(np.int64)
+) -> _Steps:
+    """Return first steps along the contours of some, x from begin to end."""
+    steps = np.maximum(3, np.ceil(np.abs(end - begin)[which] / _SPACING)).astype(np.int64)
     owner = np.repeat(which, steps + 1)
-    first = np.concatenate([[0], np.cumsum(steps + 1)[:-1]])
-    share = (np.arange(len(owner)) - np.repeat(first, steps + 1)) / np.repeat(steps, steps + 1)
+    stop = np.cumsum(steps + 1)
+    share = (np.arange(len(owner)) - np.repeat(stop - steps - 1, steps + 1)) / np.repeat(
+        steps, steps + 1
+    )
     x = begin[owner] + share * (end - begin)[owner]
-    t, log, rate = _logarithms(sums, cells, owner, x, contour, tally)
-    last = np.cumsum(steps + 1) - 1
-    starts = np.delete(np.arange(len(owner)), last)
-    left = [owner[starts], x[starts], t[starts], log[starts], rate[starts]]
-    right = [a[starts + 1] for a in (owner, x, t, log, rate)]
-    while len(left[0]):
-        good, change = _judge(left, right)
-        np.add.at(tally.phase, cells[left[0][good]], change[good])
-        narrow = ~good & (np.abs(right[2] - left[2]) < _ON_CONTOUR)
-        tally.lost[cells[left[0][narrow]]] = True
-        bad = ~good & ~tally.lost[cells[left[0]]]
-        left, right = [a[bad] for a in left], [a[bad] for a in right]
-        owner, x = left[0], 0.5 * (left[1] + right[1])
-        middle = [owner, x, *_logarithms(sums, cells, owner, x, contour, tally)]
-        left, right = (
-            [np.concatenate(pair) for pair in zip(left, middle, strict=True)],
-            [np.concatenate(pair) for pair in zip(middle, right, strict=True)],
-        )
+    columns = tally.at(owner, x, contour(owner, x))
+    starts = np.delete(np.arange(len(owner)), stop - 1)
+    left, right = tuple(c[starts] for c in columns), tuple(c[starts + 1] for c in columns)
+    return _Steps(owner[starts], left, right)
 
 
-def _logarithms(
-    sums: Sums,
-    cells: Places,
-    owner: Places,
-    x: Array,
-    contour: Callable[[Places, Array], Complex],
-    tally: _Tally,
-) -> tuple[Complex, Complex, Complex]:
-    """Return t, log det Delta and its derivative by t at places x of the owners' contours."""
-    t = contour(owner, x)
-    log, rate = np.empty(len(x), dtype=complex), np.empty(len(x), dtype=complex)
-    sizes = np.empty(len(x))
-    for k in range(0, len(x), _FEW):
-        part = slice(k, k + _FEW)
-        value, slope, scale = sums.take(owner[part]).evaluate(t[part])
-        sizes[part] = np.abs(value)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            log[part] = np.log(sizes[part]) + scale + 1j * np.angle(value)
-            rate[part] = slope / value
-    tally.see(cells[owner], t, sizes)
-    return t, log, rate
+def _logarithm(value: Complex, slope: Complex, scale: Array) -> tuple[Complex, Complex]:
+    """Return the logarithm of a value, and its derivative."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        log = np.log(np.abs(value)) + scale + 1j * np.angle(value)
+        return np.asarray(log), np.asarray(slope / value)
 
 
-def _judge(left: list[Array], right: list[Array]) -> tuple[NDArray[np.bool_], Array]:
+def _judge(steps: _Steps) -> tuple[NDArray[np.bool_], Array]:
     """Return which steps can be trusted, and the change of the phase in each."""
-    step = right[2] - left[2]
+    _, t0, log0, rate0 = steps.left
+    _, t1, log1, rate1 = steps.right
+    step = t1 - t0
     with np.errstate(invalid="ignore"):
-        predicted = 0.5 * (left[4] + right[4]) * step
-        raw = right[3] - left[3]
+        predicted = 0.5 * (rate0 + rate1) * step
+        raw = log1 - log0
         phase = (raw.imag + np.pi) % (2.0 * np.pi) - np.pi
         error = np.abs(raw.real + 1j * phase - predicted)
-        turn = np.abs((right[4] - left[4]) * step)
+        turn = np.abs((rate1 - rate0) * step)
         good = (error <= _AGREEMENT) & (turn <= _LARGEST_TURN)
         good &= np.abs(predicted.imag) <= _LARGEST_PHASE
-    return good, phase
+    return good, np.asarray(phase)

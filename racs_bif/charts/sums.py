@@ -82,7 +82,9 @@ class Sums:
         total = sizes.sum(axis=0)
         sign = np.sign(self.coefficients)
         sizes *= sign[:, None, :] if t.ndim == 2 else sign
-        angle = e * t.imag
+        # On one ray the angles do not differ from place to place.
+        ray = t.size > 0 and np.ptp(t.imag) == 0.0
+        angle = e * (t.imag.flat[0] if ray else t.imag)
         real, imaginary = sizes * np.cos(angle), sizes * np.sin(angle)
         values = []
         for k in range(order + 1):
@@ -90,6 +92,33 @@ class Sums:
                 real, imaginary = real * e, imaginary * e
             values.append((real.sum(axis=0) + 1j * imaginary.sum(axis=0)) / total)
         return (*values, top + np.log(total))
+
+    def on_ray(self, x: Array, angle: float) -> tuple[Complex, Complex, Array]:
+        """Return all sums at the same M places of a ray, for exponents that all share.
+
+        Parameters
+        ----------
+        x : array (M,)
+            log |s|.
+        angle : float
+            arg s.
+
+        Returns
+        -------
+        (complex array (M, N), complex array (M, N), array (M, N))
+            The value and its derivative by log s, and the logarithm of their scale, as `evaluate`.
+        """
+        e = self.exponents[:, 0]
+        powers = np.outer(x, e)
+        top = powers.max(axis=1)
+        powers = np.exp(powers - top[:, None])
+        total = powers @ np.abs(self.coefficients)
+        turned = powers * np.exp(1j * e * angle)
+        # One real product for the value and the derivative, real and imaginary parts.
+        stacked = np.concatenate([turned.real, turned.imag, turned.real * e, turned.imag * e])
+        parts = (stacked @ self.coefficients).reshape(4, len(x), -1) / total
+        value, slope = parts[0] + 1j * parts[1], parts[2] + 1j * parts[3]
+        return value, slope, np.log(total) + top[:, None]
 
     def leading(self) -> tuple[Array, Array, Array, Array]:
         """Return exponents (N,) and places (N,) of the highest and of the lowest power."""

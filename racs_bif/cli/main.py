@@ -12,6 +12,7 @@ import sys
 from typing import TYPE_CHECKING, Final
 
 from racs_bif.cli import (
+    analyses,
     calibrate,
     certify,
     continue_,
@@ -21,6 +22,7 @@ from racs_bif.cli import (
     simulate,
     spectrum,
 )
+from racs_bif.cli import run as run_
 from racs_bif.cli.parser import Parser
 from racs_bif.errors import ConvergenceError, RacsBifError, UsageError, nearest
 
@@ -37,6 +39,8 @@ VERBS: Final[dict[str, ModuleType]] = {
     "curve": curve,
     "calibrate": calibrate,
     "models": models,
+    "analyses": analyses,
+    "run": run_,
     "spectrum": spectrum,
     "certify": certify,
     "realisations": realisations,

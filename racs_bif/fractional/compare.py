@@ -184,7 +184,9 @@ def _with_hopf(
     row: Comparison, system: System, path: ParameterPath, exact: ExactHopf
 ) -> Comparison:
     try:
-        found = solve_realised_hopf(system, path, exact.X, exact.value, exact.omega)
+        # From beside the exact point, so that the solution is found and not merely confirmed.
+        beside = exact.value + 1e-3 * (abs(exact.value) or 1.0)
+        found = solve_realised_hopf(system, path, exact.X, beside, 1.001 * exact.omega)
     except ConvergenceError:
         return row
     return replace(

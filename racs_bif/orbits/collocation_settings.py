@@ -43,8 +43,8 @@ class CollocationSettings:
 
     intervals: int = 40
     degree: int = 4
-    most_intervals: int = 640
-    tolerance: float = 1e-5
+    most_intervals: int = 400
+    tolerance: float = 1e-6
     longest: float = 300.0
     smallest: float = 1e-3
     trivial: float = 1e-3

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 SOLVERS: Final = {"lsoda": "LSODA", "radau": "Radau"}
 """Integrators, by scipy's names."""
 _SMALL = 1e-3  # states smaller than this, SI, are held to an absolute tolerance
-_EVALUATIONS = 500  # between two reports of progress
+_REPORT = 100  # steps between two reports of progress
+_STUCK = 1e-14  # a step smaller than this, over the time, leads nowhere
 
 
 class RealisedStepper:
@@ -75,23 +76,22 @@ class RealisedStepper:
         """
         x = self.initial_states()
         edges = [0.0, *self.inputs.jump_times, float(self.times[-1])]
-        pieces, stopped = [x[:, None]], ""
+        states = np.full((len(x), len(self.times)), np.nan)
+        states[:, 0] = x
+        stopped = ""
         for low, high in pairwise(edges):
             try:
-                piece, stopped = self._piece(x, low, high, progress)
+                stopped = self._piece(states, low, high, progress)
             except KeyboardInterrupt:
                 stopped = INTERRUPTED
-                break
-            pieces.append(piece)
             if stopped:
                 break
-            x = piece[:, -1]
-        states = np.concatenate(pieces, axis=1)
-        if states.shape[1] == 1:
-            msg = f"model '{self.system.name}': {stopped} Nothing was integrated"
+        kept = int(np.all(np.isfinite(states), axis=0).cumprod().sum())
+        if kept < 2:
+            msg = f"model '{self.system.name}': nothing was integrated. {stopped}"
             raise ConvergenceError(msg)
-        times = self.times[: states.shape[1]]
-        return March(times, self._core_states(times, states), stopped)
+        times = self.times[:kept]
+        return March(times, self._core_states(times, states[:, :kept]), stopped)
 
     def initial_states(self) -> Array:
         """Return the states (n,) of model and filters at t = 0."""
@@ -104,46 +104,52 @@ class RealisedStepper:
             parts.append(np.linalg.lstsq(matrix, right, rcond=None)[0])
         return np.concatenate(parts)
 
-    def _piece(
-        self, x: Array, low: float, high: float, progress: Progress | None
-    ) -> tuple[Array, str]:
-        """Return the states at the kept times in (low, high], and why it ended early."""
-        from scipy.integrate import solve_ivp
-
-        at = self.times[(self.times > low) & (self.times <= high)]
-        constant = self.inputs.values(low) if self.inputs.constant else None
-        calls = 0
-
-        def parameters(t: float) -> Array:
-            if constant is not None:
-                return constant
-            return self.inputs.values(t, before=t >= high)
-
-        def rate(t: float, x: Array) -> Array:
-            nonlocal calls
-            calls += 1
-            if progress is not None and calls % _EVALUATIONS == 0:
-                progress(t)
-            return self.field.f(x, parameters(t))
-
-        def jacobian(t: float, x: Array) -> Array:
-            return self.field.f_x(x, parameters(t))
-
-        settings = {"rtol": self.tolerance, "atol": _SMALL * self.tolerance, "jac": jacobian}
-        kept, reached = np.empty((len(x), 0)), low
-        if np.all(np.isfinite(self.field.f(x, parameters(low)))):
-            # What overflows on the way is refused by the integrator, which says so by a warning.
+    def _piece(self, states: Array, low: float, high: float, progress: Progress | None) -> str:
+        """Fill in the states at the kept times in (low, high]; return why it ended early."""
+        solver = self._solver(states[:, np.searchsorted(self.times, low)], low, high)
+        steps = 0
+        while solver is not None and solver.status == "running":
+            # What overflows is refused by the integrator, which may say so by a warning too.
             with np.errstate(all="ignore"), warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 try:
-                    found = solve_ivp(rate, (low, high), x, self.method, at, **settings)
-                    kept = found.y[:, np.all(np.isfinite(found.y), axis=0)]
+                    solver.step()
                 except ValueError:  # a matrix that is not finite
-                    pass
-            if kept.shape[1] == len(at):
-                return kept, ""
-            reached = at[kept.shape[1] - 1] if kept.shape[1] else low
-        return kept, f"The integrator gave up after t = {reached:g} s."
+                    break
+            moved = solver.t - solver.t_old if solver.t_old is not None else 0.0
+            if solver.status == "failed" or moved <= _STUCK * high:
+                break
+            places = np.flatnonzero((self.times > solver.t_old) & (self.times <= solver.t))
+            if len(places):
+                states[:, places] = solver.dense_output()(self.times[places])
+            steps += 1
+            if progress is not None and steps % _REPORT == 0:
+                progress(float(solver.t))
+        if solver is not None and solver.status == "finished":
+            return ""
+        reached = low if solver is None else float(solver.t)
+        return f"The integrator gave up at t = {reached:g} s."
+
+    def _solver(self, x: Array, low: float, high: float) -> Any | None:  # noqa: ANN401 - scipy's
+        """Return the integrator, None where the equations are not finite."""
+        from scipy import integrate
+
+        constant = self.inputs.values(low) if self.inputs.constant else None
+
+        def parameters(t: float) -> Array:
+            return self.inputs.values(t, before=t >= high) if constant is None else constant
+
+        if not np.all(np.isfinite(self.field.f(x, parameters(low)))):
+            return None
+        return getattr(integrate, self.method)(
+            lambda t, x: self.field.f(x, parameters(t)),
+            low,
+            x,
+            high,
+            rtol=self.tolerance,
+            atol=_SMALL * self.tolerance,
+            jac=lambda t, x: self.field.f_x(x, parameters(t)),
+        )
 
     def _core_states(self, times: Array, states: Array) -> Array:
         """Return states and outputs of elements (n + ne, nt)."""

@@ -100,8 +100,8 @@ def test_what_blows_up_ends_with_what_there_is():
     assert "did not converge" in done.stopped
     assert 1.4 < done.times[-1] < 1.7
     assert done.X.shape == (1, len(done.times))
+    start = begin(system, {"x": 1e30}, "rest")
     with pytest.raises(ConvergenceError, match="smaller step"):
-        start = begin(system, {"x": 1e30}, "rest")
         ExactStepper(system, start, inputs, 2).run()
 
 

@@ -62,11 +62,14 @@ def test_what_blows_up_ends_with_what_there_is(method):
     done = stepper.run()
     assert "gave up" in done.stopped
     assert 1.4 < done.times[-1] < 1.6
-    with pytest.raises(ConvergenceError, match="gave up.*Nothing was integrated"):
+    with pytest.raises(ConvergenceError, match=r"nothing was integrated.*gave up"):
         RealisedStepper(system, begin(system, {"x": 1e200}, "rest"), inputs, 9, method).run()
 
 
-def test_an_interruption_keeps_whole_pieces(oscillator):
+def test_an_interruption_keeps_what_there_is(oscillator):
+    def exact(t):
+        return np.cos(t) + np.where(t > 50.0, 1.0 - np.cos(t - 50.0), 0.0)
+
     def stop(time):
         if time > 60.0:
             raise KeyboardInterrupt
@@ -75,5 +78,5 @@ def test_an_interruption_keeps_whole_pieces(oscillator):
     start = begin(oscillator, {"x": 1.0}, "rest")
     done = RealisedStepper(oscillator, start, inputs, 1000, tolerance=1e-10).run(stop)
     assert done.stopped == INTERRUPTED
-    assert done.times[-1] == 50.0
-    assert done.X[0] == pytest.approx(np.cos(done.times), abs=1e-6)
+    assert done.times[-1] == pytest.approx(60.0, abs=3.0)
+    assert done.X[0] == pytest.approx(exact(done.times), abs=1e-6)

@@ -46,7 +46,7 @@ def test_what_is_returned_for_the_vehicle(vehicle):
     done = rb.simulate(vehicle, 1.0, initial={"delta_c": 0.01}, step=0.005)
     assert done.state_names == ("v", "w", "delta_c", "ddelta_c")
     assert done.states.shape == (201, 4)
-    assert list(done.outputs)[0] == "delta_z"
+    assert next(iter(done.outputs)) == "delta_z"
     assert set(vehicle.outputs) <= set(done.outputs)
     assert done.column("delta_c")[0] == 0.01
     assert np.isnan(done.column("delta_z")[0])  # s**0.4 of a jump
