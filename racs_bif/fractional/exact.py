@@ -45,10 +45,19 @@ class ExactModel:
         self.compiled = field.compiled
         self.ny = len(self.compiled.states)
         self.size = self.compiled.size
+        self._key: bytes | None = None
+        self._laws: tuple[Law, ...] = ()
+        self._gains: tuple[Array, Array] = (np.zeros(0), np.zeros(0))
 
     def laws(self, p: Array) -> tuple[Law, ...]:
-        """Return the laws at base parameters p (np,)."""
-        return self.field.laws(p)
+        """Return the laws at base parameters p (np,), kept from call to call."""
+        key = np.ascontiguousarray(p, dtype=float).tobytes()
+        if key != self._key:
+            self._laws = self.field.laws(p)
+            n = np.array([law.numerator.at_zero for law in self._laws])
+            self._gains = n, np.array([law.denominator.at_zero for law in self._laws])
+            self._key = key
+        return self._laws
 
     def residual(self, X: Array, p: Array) -> Array:
         """Return the equilibrium equations (size,): g(X) and N(0) e - D(0) w."""
@@ -81,9 +90,9 @@ class ExactModel:
         return value
 
     def _static(self, p: Array) -> tuple[Array, Array]:
-        laws = self.laws(p)
-        n = np.array([law.numerator.at_zero for law in laws])
-        return n, np.array([law.denominator.at_zero for law in laws])
+        """Return N(0) and D(0) of all laws."""
+        self.laws(p)
+        return self._gains
 
     def equilibrium(self, X: Array, p: Array, *, iterations: int = 40) -> Array:
         """Return the exact equilibrium near X by a damped Newton's method.

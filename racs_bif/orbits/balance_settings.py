@@ -20,12 +20,15 @@ class BalanceSettings:
         Most harmonics that adaptation may take. The cost of a point grows with their third power.
     tail : float
         Largest of the last harmonics, relative to the whole orbit, that is let pass. The error of
-        an orbit is of this order.
+        an orbit is of this order, that of its period of the order of its square.
     poorest : float
         The tail at which the branch ends, if more harmonics are not allowed.
     multipliers : float
         Error of the orbit per step that the mesh of the variational equation would make, relative
         to the range of each state; the multipliers are an order more accurate.
+    trivial : float
+        Largest error of the trivial multiplier, times its distance from the nearest other, at which
+        the realisation still tells whether an orbit is stable.
     steps, most_steps : int
         Fewest and most steps of that mesh.
     longest : float
@@ -43,16 +46,17 @@ class BalanceSettings:
 
     harmonics: int = 20
     most_harmonics: int = 200
-    tail: float = 1e-9
+    tail: float = 1e-8
     poorest: float = 1e-5
     multipliers: float = 2e-6
+    trivial: float = 1e-2
     steps: int = 64
     most_steps: int = 1024
     longest: float = 300.0
     smallest: float = 1e-3
 
     def __post_init__(self) -> None:
-        for name in ("tail", "poorest", "multipliers", "longest", "smallest"):
+        for name in ("tail", "poorest", "multipliers", "trivial", "longest", "smallest"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise UsageError(

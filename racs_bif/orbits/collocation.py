@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.paths import ParameterPath
 
 _SAME: Final = 1e-8
-"""Relative distance below which the linearised equations are taken over."""
+"""Root mean square of relative distances below which the linearised equations are taken over."""
 _FEWEST: Final = 4
 """Fewest products of transition matrices for the multipliers, so that small ones are not lost."""
 
@@ -209,9 +209,9 @@ class CollocationProblem(OrbitProblem):
         if self._base is not None:
             known, linearised = self._base
             if len(known) == len(z) and self.reference(known).mesh is self.reference(z).mesh:
-                distance = np.abs(z - known) / self.magnitudes(z)
+                distance = (z - known) / self.magnitudes(z)
                 distance[-2] = 0.0
-                if float(distance.max()) < _SAME:
+                if float(distance @ distance) < _SAME**2 * len(z):
                     return linearised
         linearised = self.equations.linearised(self._at(z), self.reference(z).scales)
         self._base = (np.array(z), linearised)

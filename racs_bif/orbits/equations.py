@@ -10,7 +10,7 @@ from racs_bif.errors import ConvergenceError
 from racs_bif.orbits.checked import CheckedField
 from racs_bif.orbits.intervals import Linearised
 from racs_bif.orbits.lowrank import CONDITION, LowRankStages, Modes, modes
-from racs_bif.orbits.stages import DenseStages, Stages
+from racs_bif.orbits.stages import FactoredStages, InvertedStages, Stages, interval_matrices
 
 if TYPE_CHECKING:
     from racs_bif.orbits.piecewise import Piecewise
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
 _RANK: Final = 0.4
 """Rank of what varies over the number of states up to which the low-rank elimination is taken."""
-_SMALL: Final = 5
+_INVERTED: Final = 28
+"""Unknowns of an interval up to which an explicit inverse is faster than factors (measured)."""
+_SMALL: Final = 8
 """States from which on it is faster than the dense one (measured)."""
 
 
@@ -124,7 +126,11 @@ class Equations:
 
     def _dense(self, at: Collocated, scales: Array) -> Stages:
         balanced = self.jacobians(at) * (scales / scales[:, None])
-        return DenseStages(at.curve.gauss, balanced, at.tau)
+        g = at.curve.gauss
+        matrices = interval_matrices(g, balanced, at.tau)
+        if g.degree * len(scales) <= _INVERTED:
+            return InvertedStages(g, matrices)
+        return FactoredStages(g, matrices)
 
     def _low_rank(self, at: Collocated, scales: Array) -> Stages | None:
         """Return the elimination by modes, None where it does not pay or is not accurate."""

@@ -27,6 +27,8 @@ from racs_bif.orbits.problem import OrbitProblem
 from racs_bif.orbits.realised_orbit import RealisedOrbit
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.continuation.points import Point
     from racs_bif.fractional.exact import ExactModel
     from racs_bif.symbolic.field import Array
@@ -191,7 +193,7 @@ class HarmonicBalanceProblem(OrbitProblem):
         if self._solution is not None:
             known = np.frombuffer(self._solution[0])
             if len(known) == len(z):
-                distance = np.abs(z - known) / np.append(self.scales(z), max(1.0, abs(z[-1])))
+                distance = np.abs(z - known) / self._magnitudes(z)
                 distance[-2] = 0.0
                 if float(distance.max()) < _SAME:
                     return self._solution[1]
@@ -236,6 +238,19 @@ class HarmonicBalanceProblem(OrbitProblem):
     def floquet(self, z: Array) -> Floquet:
         """Return the multipliers of the realisation along the exact orbit."""
         return self.realised(z).floquet
+
+    def stable(self, spectrum: NDArray[np.complex128]) -> bool | None:
+        """Return whether an orbit is stable; None where the realisation does not tell.
+
+        As in `Floquet.health`, the error of the trivial multiplier counts by its distance from the
+        nearest other.
+        """
+        if not len(spectrum):
+            return None
+        apart = float(np.abs(spectrum[1:] - spectrum[0]).min(initial=1.0))
+        if abs(spectrum[0] - 1.0) * min(1.0, apart) > self.settings.trivial:
+            return None
+        return super().stable(spectrum)
 
     def scales(self, z: Array) -> Array:
         """Return the scales of the unknowns, the same for all harmonics, the period, and 1."""
@@ -323,19 +338,35 @@ class HarmonicBalanceProblem(OrbitProblem):
         held = np.zeros(len(z)) if tangent is None else tangent.copy()
         held[-1] = 1.0 if tangent is None else held[-1]
         direction = self._resized(held, harmonics)
-        magnitudes = np.append(self.scales(there), max(1.0, abs(z[-1])))
-        there, tangential = self._polished(there, direction / magnitudes**2, magnitudes)
+        magnitudes = self._magnitudes(there)
+        there, tangential = self._polished(there, direction / magnitudes**2)
         there = self._follow(there)
         if tangent is None:
             return there, direction
         length = np.linalg.norm(direction / magnitudes) / np.linalg.norm(tangential / magnitudes)
         return there, tangential * length
 
+    def solved(self, z: Array) -> Array:
+        """Solve for the orbit near `z` at its parameter.
+
+        Raises
+        ------
+        ConvergenceError, numpy.linalg.LinAlgError
+            If Newton's method does not converge.
+        """
+        held = np.zeros(len(z))
+        held[-1] = 1.0
+        return self._polished(z, held)[0]
+
     def _resized(self, z: Array, harmonics: int) -> Array:
         return np.concatenate((resized(self.series(z), harmonics).ravel(), z[-TAIL:]))
 
-    def _polished(self, z: Array, row: Array, magnitudes: Array) -> tuple[Array, Array]:
+    def _magnitudes(self, z: Array) -> Array:
+        return np.append(self.scales(z), max(1.0, abs(z[-1])))
+
+    def _polished(self, z: Array, row: Array) -> tuple[Array, Array]:
         """Return the solution on the hyperplane through `z`, and the direction of the branch."""
+        magnitudes = self._magnitudes(z)
         rhs = np.zeros((len(z), 2))
         rhs[-1, 1] = 1.0
         for _ in range(_POLISHING):
@@ -347,7 +378,7 @@ class HarmonicBalanceProblem(OrbitProblem):
                 return z, direction
             if not size < 1.0:
                 break
-        raise ConvergenceError("the orbit was not found again with other harmonics")
+        raise ConvergenceError("the orbit was not found: Newton's method does not converge")
 
     # ------------------------------------------------------------------ results
 

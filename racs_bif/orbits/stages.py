@@ -32,8 +32,8 @@ class Stages(ABC):
         """Return B^-T rhs."""
 
 
-class DenseStages(Stages):
-    """One LU factorisation of m n unknowns an interval.
+def interval_matrices(coefficients: Gauss, jacobians: Array, tau: Array) -> Array:
+    """Return B (N, m n, m n).
 
     Parameters
     ----------
@@ -43,6 +43,25 @@ class DenseStages(Stages):
         Derivatives of f at the Gauss points.
     tau : array (N,)
         Lengths of the intervals in time.
+    """
+    count, degree, size = jacobians.shape[:3]
+    matrix = np.zeros((count, degree, size, degree, size))
+    for j in range(degree):
+        matrix[:, j, :, j] = -tau[:, None, None] * jacobians[:, j]
+    diagonals = np.einsum("kiaja->kija", matrix)
+    diagonals += coefficients.inverse[:, :, None]
+    return matrix.reshape(count, degree * size, degree * size)
+
+
+class DenseStages(Stages):
+    """One dense matrix of m n unknowns an interval.
+
+    Parameters
+    ----------
+    coefficients : Gauss
+        Of the degree.
+    matrices : array (N, m n, m n)
+        From `interval_matrices`.
 
     Raises
     ------
@@ -50,35 +69,65 @@ class DenseStages(Stages):
         If an interval's matrix is singular: it is too long.
     """
 
-    def __init__(self, coefficients: Gauss, jacobians: Array, tau: Array) -> None:
+    def __init__(self, coefficients: Gauss, matrices: Array) -> None:
+        self._gauss = coefficients
+        self._size = matrices.shape[-1] // coefficients.degree
+        self._factorise(matrices)
+
+    def transitions(self) -> Array:
+        """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
+        g, eye = self._gauss, np.eye(self._size)
+        ends = np.multiply.outer(g.end, eye).reshape(-1, self._size)
+        blocks = self._transposed(ends).reshape(-1, g.degree, self._size, self._size)
+        sums = np.einsum("j,kjab->kba", g.row_sums, blocks)
+        return np.asarray(sums + g.end_start * eye)
+
+    @abstractmethod
+    def _factorise(self, matrices: Array) -> None:
+        """Take the matrices B (N, m n, m n)."""
+
+    @abstractmethod
+    def _transposed(self, columns: Array) -> Array:
+        """Return B^-T (N, m n, c) times the same columns (m n, c) for all intervals."""
+
+
+class InvertedStages(DenseStages):
+    """By explicit inverses, all at once: faster than factors while the matrices are small."""
+
+    def _factorise(self, matrices: Array) -> None:
+        self._inverse = np.linalg.inv(matrices)
+
+    def _transposed(self, columns: Array) -> Array:
+        return np.asarray(np.swapaxes(self._inverse, 1, 2) @ columns)
+
+    def solve(self, rhs: Array) -> Array:
+        """Return B^-1 rhs."""
+        columns = rhs.reshape(*rhs.shape[:2], -1, 1)
+        return np.asarray((self._inverse @ columns).reshape(rhs.shape))
+
+    def adjoint(self, rhs: Array) -> Array:
+        """Return B^-T rhs."""
+        rows = rhs.reshape(*rhs.shape[:2], 1, -1)
+        return np.asarray((rows @ self._inverse).reshape(rhs.shape))
+
+
+class FactoredStages(DenseStages):
+    """By LU factorisations, one interval after the other."""
+
+    def _factorise(self, matrices: Array) -> None:
         from scipy.linalg.lapack import dgetrf, dgetrs
 
-        self._gauss = coefficients
-        count, degree, size = jacobians.shape[:3]
-        matrix = np.zeros((count, degree, size, degree, size))
-        for j in range(degree):
-            matrix[:, j, :, j] = -tau[:, None, None] * jacobians[:, j]
-        diagonals = np.einsum("kiaja->kija", matrix)
-        diagonals += coefficients.inverse[:, :, None]
-        self._shape = (degree, size)
         self._solver = dgetrs
         self._factors = []
-        for one in matrix.reshape(count, degree * size, degree * size):
+        for one in matrices:
             # LAPACK reads rows as columns: what is factorised is the transpose
             lu, pivots, info = dgetrf(one.T, overwrite_a=True)
             if info > 0:
                 raise np.linalg.LinAlgError("the equations of an interval are singular")
             self._factors.append((lu, pivots))
 
-    def transitions(self) -> Array:
-        """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
-        degree, size = self._shape
-        eye = np.eye(size)
-        ends = np.multiply.outer(self._gauss.end, eye).reshape(degree * size, size)
-        adjoints = np.stack([self._solver(lu, pivots, ends)[0] for lu, pivots in self._factors])
-        blocks = adjoints.reshape(-1, degree, size, size)
-        sums = np.einsum("j,kjab->kba", self._gauss.row_sums, blocks)
-        return np.asarray(sums + self._gauss.end_start * eye)
+    def _transposed(self, columns: Array) -> Array:
+        return np.stack([self._solver(lu, pivots, columns)[0] for lu, pivots in self._factors])
 
     def solve(self, rhs: Array) -> Array:
         """Return B^-1 rhs."""
@@ -89,7 +138,7 @@ class DenseStages(Stages):
         return self._apply(rhs, transposed=0)
 
     def _apply(self, rhs: Array, *, transposed: int) -> Array:
-        columns = rhs.reshape(len(rhs), len(self._factors), -1)
+        columns = rhs.reshape(*rhs.shape[:2], -1)
         solution = np.empty_like(columns)
         for k, (lu, pivots) in enumerate(self._factors):
             solution[:, k] = self._solver(lu, pivots, columns[:, k].T, trans=transposed)[0].T

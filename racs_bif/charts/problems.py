@@ -1,0 +1,105 @@
+"""The boundaries' problems: those of special equilibria, without what only their curves need."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from racs_bif.equilibria.branch_point_curve import BranchPointCurve
+from racs_bif.equilibria.curve_problem import CurveProblem
+from racs_bif.equilibria.exact_fold_curve import ExactFoldCurve
+from racs_bif.equilibria.exact_hopf_curve import ExactHopfCurve
+
+if TYPE_CHECKING:
+    from racs_bif.continuation.points import Array, Spectrum
+
+_NO_SPECTRUM = np.empty(0, dtype=complex)
+DERIVATIVES = 4
+"""A Jacobian differentiates the characteristic matrix by s, by the state and by two parameters."""
+
+
+class _Boundary(CurveProblem):
+    """What boundaries have in common.
+
+    Attributes
+    ----------
+    evaluations : int
+        Characteristic matrices and their derivatives so far.
+    """
+
+    evaluations = 0
+
+    def residual(self, z: Array) -> Array:
+        """Return the residual, and count it."""
+        self.evaluations += 1
+        return super().residual(z)
+
+    def jacobian(self, z: Array) -> Array:
+        """Return the Jacobian, and count it."""
+        self.evaluations += DERIVATIVES
+        return super().jacobian(z)
+
+    def spectrum(self, z: Array) -> Spectrum:
+        """Return nothing: what else is unstable is counted in the regions."""
+        del z
+        return _NO_SPECTRUM
+
+
+class HopfBoundary(_Boundary, ExactHopfCurve):
+    """A pair of exact characteristic roots on the imaginary axis.
+
+    Attributes
+    ----------
+    wanted : bool
+        Whether the first Lyapunov coefficient is computed.
+    """
+
+    name = "Hopf boundary"
+    wanted = False
+
+    def adapt(self, z: Array, tangent: Array) -> None:
+        """Let the borders follow the null vectors."""
+        if self.wanted:
+            super().adapt(z, tangent)
+        else:
+            solved = self._solve(z)
+            self._borders.follow(z, _unit(solved.w), _unit(solved.v))
+
+    def measures(self, z: Array) -> dict[str, float]:
+        """Return the frequency, and l1 where it is wanted."""
+        omega = self.frequency(z)
+        if not self.wanted:
+            return {"omega": omega}
+        self.evaluations += 2
+        return {"omega": omega, "l1": self.cubic(z).c1.real / omega}
+
+    def gradient(self, z: Array) -> Array:
+        """Return the derivative (2,) of Re s by the two parameters, along the equilibria."""
+        n, jacobian = self.n, self.jacobian(z)
+        g = jacobian[n] + 1j * jacobian[n + 1]
+        drift = np.linalg.solve(jacobian[:n, :n], jacobian[:n, n + 1 :])
+        moved = g[n + 1 :] - g[:n] @ drift
+        # g depends on s = i omega analytically: dg/ds = -i dg/domega.
+        return np.asarray((-moved / (-1j * g[n])).real)
+
+
+class FoldBoundary(_Boundary, ExactFoldCurve):
+    """Where the equilibrium itself ends, in a fold."""
+
+    name = "fold boundary"
+
+    def measures(self, z: Array) -> dict[str, float]:
+        """Return nothing further."""
+        del z
+        return {}
+
+
+class StaticBoundary(_Boundary, BranchPointCurve):
+    """A real root through zero at an equilibrium that persists."""
+
+    name = "static boundary"
+
+
+def _unit(vector: Array) -> Array:
+    return np.asarray(vector / np.linalg.norm(vector)).reshape(-1, 1)

@@ -1,0 +1,295 @@
+"""Interval proofs, exact folds and counts, on the vehicle and on models known in closed form."""
+
+import math
+import sys
+
+import numpy as np
+import pytest
+from flint import acb, arb, ctx
+
+from racs_bif.errors import ConvergenceError, UsageError
+from racs_bif.fractional.certificates import Place, beside, changes, exact_count, resolve
+from racs_bif.fractional.enclosed import EnclosedModel
+from racs_bif.fractional.exact_fold import solve_fold
+from racs_bif.fractional.exact_hopf import solve_hopf
+from racs_bif.fractional.intervals import BALLS, Ball, BallFunctions, UnboundedError
+from racs_bif.fractional.krawczyk import NoneThereError
+from racs_bif.fractional.proofs import _Fold, _Hopf, prove_fold, prove_hopf
+
+U_H, OMEGA_H = 10.2, 9.5200832  # model.md, section 4
+
+
+@pytest.fixture(scope="module")
+def hopf(vehicle):
+    path = vehicle.path("u")
+    p = path.vector(U_H)
+    X = vehicle.exact_point(vehicle.equilibrium(p), p)
+    return solve_hopf(vehicle.exact, path, X, U_H, OMEGA_H)
+
+
+@pytest.fixture(scope="module")
+def brusselator(system_of):
+    """D^q x = A - (B+1) x + x^2 y, D^q y = B x - x^2 y: the integrals of order q are elements."""
+    elements = [("x", "A-(B+1)*x+x**2*y", "s**(-q)"), ("y", "B*x-x**2*y", "s**(-q)")]
+    numbers = {"A": 1.0, "B": 2.0, "q": 0.9}
+    return system_of({}, elements=elements, parameters=numbers, guess={"x": 1.0, "y": 2.0})
+
+
+@pytest.fixture(scope="module")
+def parabola(system_of):
+    """x' = mu - 1 - (x - 2)^2: a fold at mu = 1, x = 2."""
+    return system_of({"x": "mu-1-(x-2)**2"}, parameters={"mu": 2.0}, guess={"x": 3.0})
+
+
+# ------------------------------------------------------------------------------------- proofs
+
+
+def test_the_papers_hopf_point_is_proved(vehicle, hopf):
+    box = prove_hopf(vehicle.exact, vehicle.path("u"), hopf.X, hopf.value, hopf.omega)
+    assert box.contains("u", U_H)
+    assert box.contains("omega", OMEGA_H)
+    k, j = box.names.index("u"), box.names.index("omega")
+    # Uniqueness in a box that people care for, existence between neighbouring doubles or so.
+    assert box.radii[k] > 5e-3
+    assert box.radii[j] > 5e-3
+    assert box.width("u") < 1e-13
+    assert box.width("omega") < 1e-13
+    assert box.lower[k] <= hopf.value + 1e-12
+    assert hopf.value - 1e-12 <= box.upper[k]
+    # The stiffness of model.md has eight digits.
+    assert abs(box.lower[k] - U_H) < 1e-6
+    assert abs(box.lower[j] - OMEGA_H) < 1e-6
+    assert np.all(box.centre - box.radii < box.lower)
+    assert np.all(box.upper < box.centre + box.radii)
+
+
+@pytest.mark.parametrize(("u", "omega"), [(10.3, 9.52), (10.2, 9.6), (12.0, 8.9)])
+def test_a_wrong_point_is_proved_to_be_none(vehicle, hopf, u, omega):
+    with pytest.raises(NoneThereError, match="proved that no Hopf point lies in the box"):
+        prove_hopf(vehicle.exact, vehicle.path("u"), hopf.X, u, omega)
+
+
+def test_a_point_a_little_off_is_proved_all_the_same(vehicle, hopf):
+    box = prove_hopf(vehicle.exact, vehicle.path("u"), hopf.X, hopf.value + 1e-4, hopf.omega)
+    k = box.names.index("u")
+    assert box.lower[k] - 1e-12 <= hopf.value <= box.upper[k] + 1e-12
+
+
+@pytest.mark.parametrize(("q", "B", "omega"), [(0.9, 2.3128689301, 1.0), (0.8, None, 1.0)])
+def test_the_fractional_brusselator_is_proved_where_theory_has_it(brusselator, q, B, omega):
+    """B_H = 1 + A^2 + 2 A cos(q pi / 2), omega = A^(1/q); acceptance.md."""
+    exact = 2.0 + 2.0 * math.cos(0.5 * q * math.pi)
+    assert B is None or exact == pytest.approx(B, abs=1e-10)
+    system = brusselator.with_parameters({"q": q})
+    box = prove_hopf(system.exact, system.path("B"), np.array([1.0, exact]), exact, omega)
+    k = box.names.index("B")
+    assert box.lower[k] - 1e-15 <= exact <= box.upper[k] + 1e-15
+    assert box.width("B") < 1e-12
+
+
+def test_an_order_may_be_the_active_parameter(brusselator):
+    system = brusselator.with_parameters({"B": 2.5})
+    order = 2.0 / math.pi * math.acos(0.25)
+    box = prove_hopf(system.exact, system.path("q"), np.array([1.0, 2.5]), order, 1.0)
+    k = box.names.index("q")
+    assert box.lower[k] - 1e-15 <= order <= box.upper[k] + 1e-15
+
+
+def test_an_integer_order_model_is_proved(system_of):
+    equations = {"x": "A-(B+1)*x+x**2*y", "y": "B*x-x**2*y"}
+    system = system_of(equations, parameters={"A": 1.0, "B": 1.5}, guess={"x": 1.0, "y": 1.5})
+    X = np.array([1.0, 2.0])
+    box = prove_hopf(system.exact, system.path("B"), X, 2.0, 1.0)
+    np.testing.assert_allclose(box.lower, [1.0, 2.0, 2.0, 1.0], atol=1e-14)
+    np.testing.assert_allclose(box.upper, [1.0, 2.0, 2.0, 1.0], atol=1e-14)
+
+
+def test_folds_are_solved_and_proved(parabola):
+    path = parabola.path("mu")
+    fold = solve_fold(parabola.exact, path, np.array([2.2]), 1.1)
+    assert (fold.value, fold.X[0]) == pytest.approx((1.0, 2.0), abs=1e-13)
+    box = prove_fold(parabola.exact, path, fold.X, fold.value)
+    assert box.names == ("x", "mu")
+    assert box.contains("mu", 1.0)
+    assert np.all(box.lower <= [2.0, 1.0])
+    assert np.all(box.upper >= [2.0, 1.0])
+    with pytest.raises(NoneThereError, match="no fold"):
+        prove_fold(parabola.exact, path, np.array([2.3]), 1.3)
+
+
+def test_a_degenerate_point_is_not_proved(system_of):
+    """x' = mu - (x - 1)^3 has no fold at mu = 0, although the Jacobian vanishes."""
+    system = system_of({"x": "mu-(x-1)**3"}, parameters={"mu": 1.0}, guess={"x": 2.0})
+    with pytest.raises(ConvergenceError, match="no proof of a fold|no box around the fold"):
+        prove_fold(system.exact, system.path("mu"), np.array([1.0]), 0.0)
+    with pytest.raises(ConvergenceError, match="no exact fold found near mu = 1"):
+        solve_fold(system.exact, system.path("mu"), np.array([1.9]), 1.0)
+
+
+@pytest.mark.parametrize("parameter", ["u", "C_s", "alpha", "gamma", "tau_eps", "m_c"])
+@pytest.mark.parametrize("kind", ["hopf", "fold"])
+def test_slopes_agree_with_differences(vehicle, hopf, differences, parameter, kind):
+    value = 1.01 * vehicle.with_parameters({"u": U_H}).parameters[parameter]
+    path = vehicle.with_parameters({"u": U_H}).path(parameter)
+    if kind == "hopf":
+        equations = _Hopf(vehicle.exact, path, hopf.X, value, 1.01 * hopf.omega)
+    else:
+        equations = _Fold(vehicle.exact, path, hopf.X, value)
+    centre = equations.centre
+
+    def values(z):
+        return np.array([float(x) for x in equations.values([arb(v) for v in z.tolist()])])
+
+    slopes = equations.slopes([arb(v) for v in centre.tolist()])
+    for k in range(len(centre)):
+        unit = np.eye(len(centre))[k]
+
+        def along(t, unit=unit):
+            return values(centre + t * unit)
+
+        column = np.array([float(row[k].mid()) for row in slopes])
+        expected = differences(along, 0.0, 1e-3 * equations.scales[k])
+        allowed = 1e-7 * np.abs(column).max() + 1e-11
+        np.testing.assert_allclose(column, expected, rtol=1e-6, atol=allowed)
+
+
+def test_the_precision_is_put_back(vehicle, hopf):
+    before = ctx.prec
+    prove_hopf(vehicle.exact, vehicle.path("u"), hopf.X, hopf.value, hopf.omega)
+    assert ctx.prec == before
+
+
+def test_without_python_flint_the_extra_is_named(vehicle, hopf, monkeypatch):
+    monkeypatch.setitem(sys.modules, "flint", None)
+    with pytest.raises(UsageError, match=r"pip install 'racs-bif\[proof\]'"):
+        prove_hopf(vehicle.exact, vehicle.path("u"), hopf.X, hopf.value, hopf.omega)
+
+
+# ---------------------------------------------------------------------------------- intervals
+
+
+def inside(ball, value):
+    """Say whether a ball holds a double up to the rounding of computing it in doubles."""
+    room = arb(0, 1e-12 * (abs(value) + 1e-3))
+    if isinstance(value, complex):
+        ball = acb(ball)
+        return (ball.real + room).contains(value.real) and (ball.imag + room).contains(value.imag)
+    return (arb(ball) + room).contains(value)
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-6, 1e-3, 1e-2])
+def test_enclosures_hold_every_value_in_the_box(vehicle, hopf, size):
+    compiled, rng = vehicle.compiled, np.random.default_rng(7)
+    functions = BallFunctions(compiled.sources.main, compiled.sources.forms)
+    p = compiled.padded(vehicle.path("u").vector(U_H))
+    dp = compiled.padded(vehicle.path("u").direction(U_H))
+    v = hopf.q
+    centres = {"p": p, "x": hopf.X}
+    radii = {key: size * np.abs(c) for key, c in centres.items()}
+    box = {
+        key: [arb(c, r) for c, r in zip(centres[key].tolist(), radii[key].tolist(), strict=True)]
+        for key in centres
+    }
+    direction, ddp = [acb(x) for x in v.tolist()], [arb(x) for x in dp.tolist()]
+    balls = {
+        "core": functions("core", box["p"], box["x"]),
+        "jacobian_varying": functions("jacobian_varying", box["p"], box["x"]),
+        "core_p": functions("core_p", box["p"], box["x"], ddp),
+        "core_xx": functions("core_xx", box["p"], box["x"], direction, direction),
+        "core_xp": functions("core_xp", box["p"], box["x"], direction, ddp),
+        "laws": functions("laws", box["p"]),
+    }
+    more = {"core_p": (dp,), "core_xx": (v, v), "core_xp": (v, dp)}
+    for _ in range(20):
+        q = centres["p"] + rng.uniform(-1, 1, len(p)) * radii["p"]
+        x = centres["x"] + rng.uniform(-1, 1, len(hopf.X)) * radii["x"]
+        for name, found in balls.items():
+            groups = () if name == "laws" else (x, *more.get(name, ()))
+            values = compiled.kernel(name)(q, *groups)
+            assert all(inside(b, y) for b, y in zip(found, values.tolist(), strict=True)), name
+
+
+def test_enclosures_at_a_point_are_narrow(vehicle, hopf):
+    point = EnclosedModel(vehicle.exact, vehicle.path("u")).at(
+        [arb(x) for x in hopf.X.tolist()], arb(hopf.value)
+    )
+    found = point.equilibrium()
+    assert max(float(ball.rad()) for ball in found) < 1e-11
+    assert all(abs(float(ball.mid())) < 1e-9 for ball in found)
+
+
+def test_a_derived_parameter_moves_what_it_sets(vehicle, hopf):
+    path = vehicle.path("C_s")
+    value = vehicle.parameters["C_s"]
+    point = EnclosedModel(vehicle.exact, path).at([arb(x) for x in hopf.X.tolist()], arb(value))
+    vector, direction = path.vector(value), path.direction(value)
+    assert all(inside(b, x) for b, x in zip(point.p, vector.tolist(), strict=False))
+    assert all(inside(b, x) for b, x in zip(point.dp, direction.tolist(), strict=False))
+
+
+def test_what_is_undecided_is_an_error():
+    wide, right = Ball(arb(0, 1)), Ball(arb(3))
+    assert wide < right
+    assert right >= 3.0
+    assert right == 3.0
+    assert wide != right
+    for undecided in (lambda: wide < 0.5, lambda: wide >= 0.5, lambda: wide == wide + 0.0):
+        with pytest.raises(UnboundedError, match="in one part of the box only"):
+            undecided()
+    with pytest.raises(UnboundedError):
+        BALLS.sign(wide)
+    assert BALLS.sign(Ball(arb(-2))) == -1.0
+    assert BALLS.where(True, right, wide) is right
+    assert BALLS.absorb(Ball(arb(1)) / 0.0, 0.0) == 0.0
+
+
+def test_constants_that_were_rounded_are_balls():
+    one = Ball(arb(1))
+    assert (one * 0.5).ball.is_exact()
+    tenth = (one * 0.1).ball
+    assert tenth.contains(arb(1) / 10)
+    assert not tenth.is_exact()
+
+
+def test_equations_with_a_kink_in_the_box_are_refused(system_of):
+    """x' = y - 1, y' = -x + mu y - |x|: the Hopf point lies on the kink."""
+    equations = {"x": "y", "y": "-x+mu*y-Abs(x)/2"}
+    system = system_of(equations, parameters={"mu": 0.1}, guess={"x": 0.0, "y": 0.0})
+    with pytest.raises(ConvergenceError, match="no proof of a Hopf point"):
+        prove_hopf(system.exact, system.path("mu"), np.zeros(2), 0.0, 1.0)
+
+
+# ------------------------------------------------------------------ solving again and counting
+
+
+def test_a_point_is_solved_again_and_its_shift_told(vehicle, hopf):
+    place = Place(X=hopf.X, value=hopf.value * 1.001)
+    found = resolve(vehicle.exact, vehicle.path("u"), place, hopf.omega)
+    assert found.value == pytest.approx(hopf.value, rel=1e-12)
+    assert found.shift == pytest.approx(1e-3, rel=1e-3)
+    assert found.correction < 1e-10
+    with pytest.raises(ConvergenceError, match=r"is elsewhere, at u = 10\.2"):
+        resolve(vehicle.exact, vehicle.path("u"), place, hopf.omega, tolerance=1e-4)
+
+
+def test_counts_on_both_sides_of_a_fold(parabola):
+    path, exact = parabola.path("mu"), parabola.exact
+    fold = Place(X=np.array([2.0]), value=1.0)
+    upper, lower = (Place(X=np.array([x]), value=2.0) for x in (3.0, 1.0))
+    above, below = (beside(exact, path, fold, end) for end in (upper, lower))
+    assert above.X[0] > 2.0 > below.X[0]
+    for place, unstable in ((above, 0), (below, 1), (upper, 0), (lower, 1)):
+        assert place.value == pytest.approx(1.0 + (place.X[0] - 2.0) ** 2, abs=1e-10)
+        assert exact_count(exact, path, place).unstable == unstable
+
+
+def test_a_count_where_no_equilibrium_is_refused(parabola):
+    with pytest.raises(ConvergenceError, match="elsewhere"):
+        exact_count(parabola.exact, parabola.path("mu"), Place(X=np.array([4.0]), value=2.0))
+
+
+def test_what_special_points_allow():
+    assert changes([]) == {0}
+    assert changes(["H"]) == {-2, 2}
+    assert changes(["BP"]) == {-1, 0, 1}
+    assert changes(["H", "H"]) == {-4, 0, 4}
