@@ -24,9 +24,11 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array
 
 KINDS = ("hopf", "static", "fold")
-_BETWEEN = 4
+BETWEEN = 4
+"""Stretches of the line between two points."""
 _STRAIGHT = 0.5
 _FIRST = 2e-3
+_AT_BOX = 1e-8
 
 
 @dataclass(frozen=True)
@@ -81,8 +83,6 @@ class Boundary:
         a change of sign is known.
     line : array (k, 2)
         The curve in the unit square, smoothly between the points.
-    owner : int array (k,)
-        The point, of those above, that begins the stretch of the line.
     closed : bool
         Whether it is a closed curve.
     stopped : str
@@ -102,7 +102,6 @@ class Boundary:
     l1: Array
     gradient: Array
     line: Array
-    owner: np.ndarray
     closed: bool
     stopped: str
     complete: bool
@@ -190,8 +189,8 @@ def _boundary(
     gradient = np.full((len(points), 2), np.nan)
     if isinstance(problem, HopfBoundary):
         gradient = np.array([problem.gradient(p.z) for p in points]) * plane.width
-    line, owner = _line(plane, points)
-    ends = [end for end in (found.stopped_backward, found.stopped) if end is not None]
+    line = _line(plane, points)
+    ends = _ends(plane, found, values)
     special = tuple(
         Special(
             raw.label,
@@ -209,7 +208,6 @@ def _boundary(
         l1=l1,
         gradient=gradient,
         line=line,
-        owner=owner,
         closed=closed,
         stopped=" ".join(dict.fromkeys(end.value for end in ends)),
         complete=all(end.complete for end in ends),
@@ -218,12 +216,27 @@ def _boundary(
     )
 
 
-def _line(plane: Plane, points: list[Point]) -> tuple[Array, np.ndarray]:
-    """Return points on cubics between the points, in the unit square, and where they belong."""
+def _ends(plane: Plane, found: Trace, values: Array) -> list[Stopped]:
+    """Return why it ended at its ends; at the box, whatever the engine ran into beyond it."""
+    ends = []
+    for stopped, place in ((found.stopped_backward, 0), (found.stopped, -1)):
+        at = plane.places(values[place])
+        if stopped is None and len(values) == 1:
+            continue
+        boxed = bool(np.any((at <= _AT_BOX) | (at >= 1.0 - _AT_BOX)))
+        if stopped is not Stopped.CLOSED and boxed:
+            ends.append(Stopped.SPAN)
+        elif stopped is not None:
+            ends.append(stopped)
+    return ends
+
+
+def _line(plane: Plane, points: list[Point]) -> Array:
+    """Return points on cubics between the points, in the unit square."""
     at = plane.places(np.array([p.z[-2:] for p in points]).T).T
     slopes = np.array([p.tangent[-2:] for p in points]) / plane.width
     if len(points) < 2:
-        return at, np.zeros(len(at), dtype=int)
+        return at
     chords = np.diff(at, axis=0)
     lengths = np.hypot(*chords.T)[:, None]
     lengths[lengths == 0.0] = 1e-300
@@ -236,8 +249,8 @@ def _line(plane: Plane, points: list[Point]) -> tuple[Array, np.ndarray]:
     ) < _STRAIGHT * lengths[:, 0]
     begin = np.where(straight[:, None], chords / lengths, begin)
     end = np.where(straight[:, None], chords / lengths, end)
-    pieces, owner = [], []
-    for share in np.arange(_BETWEEN) / _BETWEEN:
+    pieces = []
+    for share in np.arange(BETWEEN) / BETWEEN:
         s2, s3 = share**2, share**3
         pieces.append(
             (2 * s3 - 3 * s2 + 1) * at[:-1]
@@ -245,8 +258,5 @@ def _line(plane: Plane, points: list[Point]) -> tuple[Array, np.ndarray]:
             + (3 * s2 - 2 * s3) * at[1:]
             + (s3 - s2) * lengths * end
         )
-        owner.append(np.arange(len(chords)))
     line = np.stack(pieces, axis=1).reshape(-1, 2)
-    places = np.stack(owner, axis=1).reshape(-1)
-    line = np.clip(np.vstack([line, at[-1]]), 0.0, 1.0)
-    return line, np.append(places, len(chords))
+    return np.clip(np.vstack([line, at[-1]]), 0.0, 1.0)

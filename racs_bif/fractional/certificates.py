@@ -27,6 +27,7 @@ CROSSINGS: Final = {"H": (2,), "LP": (1,), "BP": (0, 1)}
 """By how many the number of unstable roots may change at a special point, up or down."""
 _LEAST: Final = 1e-3
 _NEAR: Final = 0.05
+_TINY: Final = 1e-6  # states all smaller than this are compared with it
 _ITERATIONS: Final = 20
 _TOLERANCE: Final = 1e-11
 
@@ -135,7 +136,8 @@ def exact_count(model: ExactModel, path: ParameterPath, place: Place) -> Count:
     """
     p = path.vector(place.value)
     X = model.equilibrium(place.X, p)
-    _check_near(X, place.X, _NEAR * _size(X, place.X))
+    if not near(X, place.X):
+        raise ConvergenceError(_elsewhere(X, place.X))
     return count_unstable(model, X, p)
 
 
@@ -167,22 +169,26 @@ def beside(model: ExactModel, path: ParameterPath, start: Place, end: Place) -> 
         if not np.all(np.isfinite(z)):
             break
         if np.all(np.abs(step) <= _TOLERANCE * (np.abs(z).max() + 1.0)):
-            allowed = max(_NEAR * _size(start.X, end.X), float(np.abs(chord[:-1]).max()))
-            _check_near(z[:-1], target[:-1], allowed)
+            away = float(np.abs(z - target)[:-1].max())
+            if away > float(np.abs(chord[:-1]).max()) and not near(z[:-1], target[:-1]):
+                raise ConvergenceError(_elsewhere(z[:-1], target[:-1]))
             return Place(X=z[:-1], value=float(z[-1]))
     msg = f"no exact equilibrium found beside {path.names[0]} = {start.value:.7g}"
     raise ConvergenceError(msg)
 
 
 def _size(one: Array, other: Array) -> float:
-    return max(float(np.abs(one).max()), float(np.abs(other).max()), 1e-12)
+    return max(float(np.abs(one).max()), float(np.abs(other).max()), _TINY)
 
 
-def _check_near(X: Array, reported: Array, allowed: float) -> None:
+def near(one: Array, other: Array) -> bool:
+    """Say whether two states (size,) are the same but for what a realisation may be off by."""
+    return float(np.abs(one - other).max()) <= _NEAR * _size(one, other)
+
+
+def _elsewhere(X: Array, reported: Array) -> str:
     away = float(np.abs(X - reported).max())
-    if away > allowed:
-        msg = f"the exact equilibrium is elsewhere: its states differ by {away:.1e}"
-        raise ConvergenceError(msg)
+    return f"the exact equilibrium is elsewhere: its states differ by {away:.1e}"
 
 
 def changes(labels: Iterable[str]) -> set[int]:

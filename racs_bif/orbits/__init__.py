@@ -1,6 +1,16 @@
 """Periodic orbits: discretisations, Floquet multipliers, detectors of their special points."""
 
 from racs_bif.orbits.branch_point import BranchPointOfCycles
+from racs_bif.orbits.collocation import CollocationProblem
+from racs_bif.orbits.collocation_settings import CollocationSettings
+from racs_bif.orbits.collocation_start import (
+    CollocationStart,
+    collocated_from_hopf,
+    collocated_from_orbit,
+    collocated_from_samples,
+    doubled,
+    switched,
+)
 from racs_bif.orbits.cycles_fold import FoldOfCycles
 from racs_bif.orbits.floquet import Floquet, floquet
 from racs_bif.orbits.neimark_sacker import NeimarkSacker
@@ -13,6 +23,9 @@ from racs_bif.orbits.start import Start, from_hopf, from_samples, hopf_orbit
 
 __all__ = [
     "BranchPointOfCycles",
+    "CollocationProblem",
+    "CollocationSettings",
+    "CollocationStart",
     "Floquet",
     "FoldOfCycles",
     "NeimarkSacker",
@@ -23,9 +36,14 @@ __all__ = [
     "Refinement",
     "ShootingProblem",
     "Start",
+    "collocated_from_hopf",
+    "collocated_from_orbit",
+    "collocated_from_samples",
+    "doubled",
     "floquet",
     "from_hopf",
     "from_samples",
     "hopf_orbit",
     "refined",
+    "switched",
 ]

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from racs_bif.errors import UsageError
+from racs_bif.fractional.exact import ExactModel
+from racs_bif.fractional.exact_hopf import solve_hopf
+from racs_bif.fractional.realised import RealisedField
 from racs_bif.orbits.balance import Balance
 from racs_bif.orbits.balance_settings import BalanceSettings
 from racs_bif.orbits.diagonals import Diagonals
@@ -23,12 +26,12 @@ from racs_bif.orbits.fourier import (
 from racs_bif.orbits.harmonic_balance import HarmonicBalanceProblem, PhaseReference
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
-    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.equilibria.hopf_form import HopfForm
     from racs_bif.fractional.exact_hopf import ExactHopf
     from racs_bif.orbits.fourier import Complex
-    from racs_bif.symbolic.field import Array
+    from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
 
 _REACH: Final = 0.05
@@ -56,6 +59,56 @@ class BalanceStart:
     problem: HarmonicBalanceProblem
     z: Array
     tangent: Array | None
+
+
+def balanced_from_hopf(
+    field: VectorField,
+    path: ParameterPath,
+    point: ArrayLike,
+    omega: float,
+    q: NDArray[np.complex128],
+    *,
+    form: HopfForm | None = None,
+    settings: BalanceSettings | None = None,
+) -> BalanceStart:
+    """Start from a Hopf point of a realisation: the exact one near it is solved for.
+
+    Parameters
+    ----------
+    field : RealisedField
+        The realised model; harmonic balance uses the exact one behind it.
+    path : ParameterPath
+        Where the active parameter leads.
+    point : array (n + 1,)
+        The Hopf point, the active parameter last.
+    omega : float
+        Its frequency, rad per unit of time.
+    q, form
+        Of the realisation; the exact null vector and expansion take their place.
+    settings : BalanceSettings, optional
+        How orbits are resolved.
+
+    Raises
+    ------
+    UsageError
+        If the field does not come from a model.
+    ConvergenceError
+        If there is no exact Hopf point near it, or it is degenerate.
+    """
+    del q, form
+    if not isinstance(field, RealisedField):
+        raise UsageError(
+            "harmonic balance needs a model, not a vector field alone: its elements have to be "
+            "known exactly; take shooting or collocation"
+        )
+    model = ExactModel(field)
+    state, value = np.split(np.asarray(point, dtype=float), [-1])
+    active = float(value[0])
+    frame = field.frame(path.vector(active))
+    X = np.array(field.core_point(state, path.vector(active)))
+    through = frame.P[len(frame.P) - (model.size - model.ny) :]
+    X[model.ny :] += through * model.compiled.core(X, frame.P)[model.ny :]
+    return from_exact_hopf(model, path, solve_hopf(model, path, X, active, omega), settings=settings)
 
 
 def from_exact_hopf(

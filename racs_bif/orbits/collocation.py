@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
 
-_SAME: Final = 1e-8
+_SAME: Final = 1e-9
 """Root mean square of relative distances below which the linearised equations are taken over."""
 _FEWEST: Final = 4
 """Fewest products of transition matrices for the multipliers, so that small ones are not lost."""

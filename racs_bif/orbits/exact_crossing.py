@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from racs_bif.errors import ConvergenceError, UsageError
-from racs_bif.orbits.hill import exact_multiplier
+from racs_bif.orbits.hill import ExactMultiplier, exact_multiplier
 
 if TYPE_CHECKING:
     from racs_bif.orbits.harmonic_balance import HarmonicBalanceProblem
@@ -65,25 +65,36 @@ def exact_crossing(
     ends = [problem.with_harmonics(z, harmonics)[0] for z in (first, last)]
     ends[1][-2] = ends[0][-2]  # one phase condition for both
     ends[1] = problem.solved(ends[1])
-    multipliers = [exact_multiplier(problem.solution(ends[0]), guess).multiplier]
-    multipliers.append(exact_multiplier(problem.solution(ends[1]), multipliers[0]).multiplier)
-    sides = [float(np.log(abs(m))) for m in multipliers]
+    known = [exact_multiplier(problem.solution(ends[0]), guess)]
+    known.append(_followed(problem, ends[1], known[0]))
+    sides = [_side(found) for found in known]
     if sides[0] * sides[1] > 0.0:
         raise UsageError(
-            f"the multiplier is {multipliers[0]:.6g} at one orbit and {multipliers[1]:.6g} at the "
-            "other, on the same side of the unit circle: give orbits on both sides"
+            f"the multiplier is {known[0].multiplier:.6g} at one orbit and "
+            f"{known[1].multiplier:.6g} at the other, on the same side of the unit circle: "
+            "give orbits on both sides"
         )
     for _ in range(_ITERATIONS):
         share = sides[0] / (sides[0] - sides[1])
-        between = (1.0 - share) * ends[0] + share * ends[1]
-        z = problem.solved(between)
-        nearer = multipliers[0] if share < 0.5 else multipliers[1]
-        multiplier = exact_multiplier(problem.solution(z), nearer).multiplier
-        side = float(np.log(abs(multiplier)))
+        z = problem.solved((1.0 - share) * ends[0] + share * ends[1])
+        found = _followed(problem, z, known[0] if share < 0.5 else known[1])
+        side = _side(found)
         if abs(side) < _TOLERANCE:
-            return ExactCrossing(z, float(z[-1]), problem.period(z), multiplier)
+            return ExactCrossing(z, float(z[-1]), problem.period(z), found.multiplier)
         # the Illinois rule: an end that stays counts half
         k = 0 if side * sides[0] > 0.0 else 1
-        ends[k], multipliers[k], sides[k] = z, multiplier, side
+        ends[k], known[k], sides[k] = z, found, side
         sides[1 - k] *= 0.5
     raise ConvergenceError("the crossing of the unit circle was not located")
+
+
+def _followed(
+    problem: HarmonicBalanceProblem, z: Array, before: ExactMultiplier
+) -> ExactMultiplier:
+    """Return the multiplier that continues the one of a neighbouring orbit."""
+    return exact_multiplier(problem.solution(z), before.multiplier, before.vector)
+
+
+def _side(found: ExactMultiplier) -> float:
+    """Return the logarithm of the modulus: negative inside the unit circle."""
+    return float(np.log(abs(found.multiplier)))

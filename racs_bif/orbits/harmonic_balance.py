@@ -393,6 +393,14 @@ class HarmonicBalanceProblem(OrbitProblem):
         """
         return evaluated(self.realised(z).spectrum, fractions)
 
+    def remarks(self, z: Array) -> dict[str, float | str]:
+        """Return how the orbit was resolved and where its multipliers come from."""
+        return {
+            "harmonics": float(self.harmonics(z)),
+            "tail": self.tail(z),
+            "stability by": STABILITY,
+        }
+
     def measures(self, z: Array) -> dict[str, float]:
         """Return period, extremes of the model's states, tail, harmonics, and trivial error."""
         own = self.model.ny

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 _ITERATIONS: Final = 15
 _TOLERANCE: Final = 1e-10
+_TRIVIAL: Final = 1e-7
 _SEED: Final = 7
 
 
@@ -38,16 +39,21 @@ class ExactMultiplier:
         Distance from the guess.
     residual : float
         Last correction of sigma T: what is left of the error.
+    vector : complex array
+        The periodic factor v, the harmonics -H to H of the unknowns kept.
     """
 
     multiplier: complex
     exponent: complex
     shift: float
     residual: float
+    vector: Complex
 
 
-def exact_multiplier(orbit: Balanced, guess: complex) -> ExactMultiplier:
-    """Find the multiplier of the exact operator near a guess.
+def exact_multiplier(
+    orbit: Balanced, guess: complex, vector: Complex | None = None
+) -> ExactMultiplier:
+    """Find the multiplier of the exact operator near a guess, other than the trivial one.
 
     Parameters
     ----------
@@ -55,6 +61,8 @@ def exact_multiplier(orbit: Balanced, guess: complex) -> ExactMultiplier:
         The balance at the orbit.
     guess : complex
         A multiplier of a realisation.
+    vector : complex array, optional
+        Of the same multiplier of an orbit near by, with as many harmonics.
 
     Raises
     ------
@@ -63,13 +71,9 @@ def exact_multiplier(orbit: Balanced, guess: complex) -> ExactMultiplier:
         principal branch is cut there, and the exact operator decays algebraically instead.
     """
     sigma = complex(np.log(complex(guess))) / orbit.period
-    rng = np.random.default_rng(_SEED)
-    size = (2 * orbit.harmonics + 1) * len(orbit.balance.kept)
-    v = rng.standard_normal(size) + 1j * rng.standard_normal(size)
-    for _ in range(3):  # inverse iteration for the first vector
-        v = np.linalg.solve(_matrix(orbit, sigma), _slope(orbit, sigma, v))
-        v = v / np.linalg.norm(v)
-    border, change = v.conj(), math.inf
+    v = _first_vector(orbit, sigma) if vector is None else vector
+    size = len(v)
+    border, change = v.conj() / np.vdot(v, v).real, math.inf
     for _ in range(_ITERATIONS):
         matrix = np.zeros((size + 1, size + 1), dtype=complex)
         matrix[:size, :size] = _matrix(orbit, sigma)
@@ -81,10 +85,23 @@ def exact_multiplier(orbit: Balanced, guess: complex) -> ExactMultiplier:
         change = abs(step[size]) * orbit.period
         if change < _TOLERANCE:
             multiplier = complex(np.exp(sigma * orbit.period))
-            return ExactMultiplier(multiplier, sigma, abs(multiplier - guess), change)
+            if abs(multiplier - 1.0) < _TRIVIAL:
+                break
+            return ExactMultiplier(multiplier, sigma, abs(multiplier - guess), change, v)
         if not change < 2.0 * math.pi:
             break
     raise ConvergenceError(f"the exact operator has no multiplier near {guess:.6g}")
+
+
+def _first_vector(orbit: Balanced, sigma: complex) -> Complex:
+    """Return a vector by inverse iteration."""
+    rng = np.random.default_rng(_SEED)
+    size = (2 * orbit.harmonics + 1) * len(orbit.balance.kept)
+    v = rng.standard_normal(size) + 1j * rng.standard_normal(size)
+    for _ in range(3):
+        v = np.linalg.solve(_matrix(orbit, sigma), _slope(orbit, sigma, v))
+        v /= np.linalg.norm(v)
+    return v
 
 
 def _shifts(orbit: Balanced, sigma: complex) -> Complex:

@@ -109,6 +109,11 @@ class OrbitProblem(Problem):
         measures["trivial error"] = self.floquet(z).trivial_error
         return measures
 
+    def remarks(self, z: Array) -> dict[str, float | str]:
+        """Return what else there is to know about an orbit, by default nothing."""
+        del z
+        return {}
+
     def spectrum(self, z: Array) -> NDArray[np.complex128]:
         """Return the multipliers (n,), the trivial one first; none of what is no proper orbit."""
         if self.degenerate(z):

@@ -114,9 +114,7 @@ def hopf_seed(
     )
 
 
-def samples_seed(
-    field: VectorField, times: ArrayLike, profile: ArrayLike, value: float
-) -> Seed:
+def samples_seed(field: VectorField, times: ArrayLike, profile: ArrayLike, value: float) -> Seed:
     """Describe an orbit known by samples: a simulation's tail, another method, a saved orbit.
 
     Parameters

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
 
+
 @dataclass(frozen=True, eq=False)
 class Start:
     """All that the engine needs to follow a branch of orbits.

@@ -87,12 +87,19 @@ class _Search:
                 continue
 
     def _known(self, found: Trace) -> bool:
-        """Say whether a branch was traced before, from its point in the middle."""
-        middle = found.points[len(found.points) // 2]
-        p = self.system.path(self.parameter).vector(middle.parameter)
-        X = self.system.exact_point(middle.z[:-1], p)
+        """Say whether a branch was traced before, from two points away from its middle.
+
+        Branches that cross have a point in common, often the one in the middle.
+        """
+        last = len(found.points) - 1
+        return all(self._passes(found.points[k]) for k in (last // 4, last - last // 4))
+
+    def _passes(self, point: Point) -> bool:
+        """Say whether a known branch passes a point."""
+        p = self.system.path(self.parameter).vector(point.parameter)
+        X = self.system.exact_point(point.z[:-1], p)
         scale = _scale([X])
-        return any(same_state(X, Y, scale) for Y in self.states_at(middle.parameter))
+        return any(same_state(X, Y, scale) for Y in self.states_at(point.parameter))
 
     def probe(self, value: float) -> None:
         """Look for equilibria at a value that no known branch passes, and follow them."""

@@ -7,7 +7,7 @@ from itertools import groupby, pairwise
 from typing import TYPE_CHECKING
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.certificates import CROSSINGS, Place, beside, changes, exact_count
+from racs_bif.fractional.certificates import CROSSINGS, Place, beside, changes, exact_count, near
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -23,12 +23,14 @@ class _Verdict:
     """What the exact model says of one ordinary point of the branch.
 
     `count` is the number of exact unstable roots, None where it could not be had; `complaint` is
-    empty where that agrees with what is reported.
+    empty where that agrees with what is reported. `shifted` points lie between a special point as
+    reported and the exact one: there the count is the one reported.
     """
 
     k: int
     count: int | None
     complaint: str = ""
+    shifted: bool = False
 
 
 def complete(subject: Subject, resolved: Mapping[str, Resolved]) -> Iterator[Check]:
@@ -72,18 +74,18 @@ def _judge(subject: Subject, k: int, resolved: Mapping[str, Resolved]) -> _Verdi
     neutral = bool(count.on_line) or count.at_zero
     if reported == count.unstable and (neutral or bool(branch.stable[k]) == (reported == 0)):
         return _Verdict(k, reported)
-    if _between(subject, place.value, resolved):
-        return _Verdict(k, reported)
+    if _between(subject, place, resolved):
+        return _Verdict(k, reported, shifted=True)
     told = "stable" if branch.stable[k] else "unstable"
     complaint = f"reported {told} with {reported} unstable roots, the exact model has "
     return _Verdict(k, count.unstable, f"{complaint}{count.unstable}")
 
 
-def _between(subject: Subject, value: float, resolved: Mapping[str, Resolved]) -> bool:
-    """Say whether a value lies between a special point as reported and the exact one."""
+def _between(subject: Subject, place: Place, resolved: Mapping[str, Resolved]) -> bool:
+    """Say whether a place lies between a special point as reported and the exact one."""
     for name, exact in resolved.items():
         ends = subject.branch[name].parameters[subject.parameter], exact.value
-        if min(ends) <= value <= max(ends):
+        if min(ends) <= place.value <= max(ends) and near(place.X, exact.X):
             return True
     return False
 
@@ -129,8 +131,8 @@ def _sides(
 ) -> Check:
     """Compare both sides of a special point with the stability reported there."""
     branch, k = subject.branch, point.index
-    before = next((v.k for v in reversed(verdicts) if v.k < k), None)
-    after = next((v.k for v in verdicts if v.k > k), None)
+    before = next((v.k for v in reversed(verdicts) if v.k < k and not v.shifted), None)
+    after = next((v.k for v in verdicts if v.k > k and not v.shifted), None)
     numbers: dict[str, float] = {}
     values, holds, words = [float(branch.parameter[k])], True, []
     try:
@@ -155,7 +157,7 @@ def _aside(subject: Subject, k: int, neighbour: int, resolved: Mapping[str, Reso
     """Return a place near point k towards a neighbour, the neighbour if that is within a shift."""
     end = subject.place(neighbour)
     place = beside(subject.exact, subject.path, subject.place(k), end)
-    return end if _between(subject, place.value, resolved) else place
+    return end if _between(subject, place, resolved) else place
 
 
 def _where(subject: Subject, interval: tuple[float, float]) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -13,10 +14,15 @@ from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.trace import trace
 from racs_bif.errors import UsageError, nearest
 from racs_bif.numerics.threads import single_threaded
+from racs_bif.orbits.balance_settings import BalanceSettings
+from racs_bif.orbits.balance_start import balanced_from_hopf
 from racs_bif.orbits.branch_point import BranchPointOfCycles
+from racs_bif.orbits.collocation_settings import CollocationSettings
+from racs_bif.orbits.collocation_start import collocated_from_hopf
 from racs_bif.orbits.cycles_fold import FoldOfCycles
 from racs_bif.orbits.neimark_sacker import NeimarkSacker
 from racs_bif.orbits.period_doubling import PeriodDoubling
+from racs_bif.orbits.settings import OrbitSettings
 from racs_bif.orbits.start import from_hopf
 from racs_bif.results.branch import Branch, Profile
 from racs_bif.results.provenance import describe
@@ -26,15 +32,18 @@ from racs_bif.verbs.equilibria import check_span
 from racs_bif.verbs.origin import Origin
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from racs_bif.equilibria.hopf_form import HopfForm
     from racs_bif.orbits.orbit import Orbit
     from racs_bif.orbits.problem import OrbitProblem
-    from racs_bif.orbits.settings import OrbitSettings
 
-METHODS = ("shooting",)
-"""Discretisations of periodic orbits."""
+METHODS: Final[dict[str, tuple[Callable[..., Any], type]]] = {
+    "shooting": (from_hopf, OrbitSettings),
+    "collocation": (collocated_from_hopf, CollocationSettings),
+    "harmonic-balance": (balanced_from_hopf, BalanceSettings),
+}
+"""Discretisations of periodic orbits: how a branch starts from a Hopf point, and the settings."""
 _STEPS = StepSettings(maximum=0.05, tolerance=1e-8)
 
 
@@ -46,7 +55,7 @@ def continue_orbits(
     method: str = "shooting",
     at: Sequence[float] = (),
     settings: StepSettings | None = None,
-    orbit_settings: OrbitSettings | None = None,
+    orbit_settings: OrbitSettings | CollocationSettings | BalanceSettings | None = None,
     progress: Callable[[Point], None] | None = None,
 ) -> Branch:
     """Follow the periodic orbits born at a Hopf point through a span of the parameter.
@@ -60,13 +69,16 @@ def continue_orbits(
     span : (float, float), optional
         Interval of the parameter; that of the equilibria where left out.
     method : str
-        ``shooting``: multiple shooting with the implicit Radau method.
+        ``shooting``: multiple shooting with the implicit Radau method. ``collocation``: orthogonal
+        collocation at Gauss points on an adaptive mesh. ``harmonic-balance``: Fourier series on the
+        exact fractional operator, from the exact Hopf point; multipliers still are those of the
+        realisation, along the exact orbit.
     at : sequence of float
         Values of the parameter at which orbits are wanted exactly; they are labelled UZ.
     settings : StepSettings, optional
         Step control.
-    orbit_settings : OrbitSettings, optional
-        How orbits are resolved.
+    orbit_settings : OrbitSettings, CollocationSettings or BalanceSettings, optional
+        How orbits are resolved, as the method has it.
     progress : callable, optional
         Called with every new point.
 
@@ -78,10 +90,15 @@ def continue_orbits(
     Raises
     ------
     UsageError
-        If the point is no Hopf point or was loaded from a file, or the method is unknown.
+        If the point is no Hopf point or was loaded from a file, the method is unknown, or the
+        settings are those of another.
     """
     if method not in METHODS:
         msg = f"unknown method '{method}'; {nearest(method, METHODS)}"
+        raise UsageError(msg)
+    begin, kind = METHODS[method]
+    if not isinstance(orbit_settings, kind | None):
+        msg = f"{method} takes {kind.__name__}, not {type(orbit_settings).__name__}"
         raise UsageError(msg)
     origin = hopf.origin
     if hopf.label != "H":
@@ -96,9 +113,7 @@ def continue_orbits(
         msg = f"{hopf.name} at {raw.z[-1]:g} is outside the span {low:g} to {high:g}; widen it"
         raise UsageError(msg)
     form: HopfForm = raw.data["form"]
-    start = from_hopf(
-        system.field, path, raw.z, form.omega, form.q, form=form, settings=orbit_settings
-    )
+    start = begin(system.field, path, raw.z, form.omega, form.q, form=form, settings=orbit_settings)
     found = trace(
         start.problem,
         start.z,
@@ -110,10 +125,10 @@ def continue_orbits(
         targets=tuple(at),
         progress=progress,
     )
-    return _branch(origin, start.problem, found, hopf)
+    return _branch(origin, start.problem, found, method)
 
 
-def _branch(origin: Origin, problem: OrbitProblem, found: Trace, hopf: SpecialPoint) -> Branch:
+def _branch(origin: Origin, problem: OrbitProblem, found: Trace, method: str) -> Branch:
     system = origin.system
     sentence, early = assemble.stopped(found)
     _adopt(found)
@@ -136,7 +151,7 @@ def _branch(origin: Origin, problem: OrbitProblem, found: Trace, hopf: SpecialPo
         stopped=sentence,
         early=early,
         system=describe(system),
-        method="shooting",
+        method=method,
         profiles=profiles,
         **assemble.columns(found.points),
     )
@@ -184,16 +199,14 @@ def _ends(found: Trace) -> list[RawPoint]:
     return [raw]
 
 
-def _special(
-    origin: Origin, problem: OrbitProblem, raw: RawPoint, orbit: Orbit
-) -> SpecialPoint:
+def _special(origin: Origin, problem: OrbitProblem, raw: RawPoint, orbit: Orbit) -> SpecialPoint:
     own = origin.system.states
     data: dict[str, Any] = {
         "period": orbit.period,
         "trivial_error": orbit.trivial_error,
         "multipliers": np.asarray(orbit.multipliers),
     }
-    data |= assemble.numbers(raw.data)
+    data |= assemble.numbers(raw.data) | problem.remarks(raw.z)
     return SpecialPoint(
         label=raw.label,
         name=raw.name,

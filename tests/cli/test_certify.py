@@ -11,13 +11,15 @@ import racs_bif as rb
 
 
 @pytest.fixture
-def saved(cli, normal_form, tmp_path):
-    """The file of a diagram, orbits among its branches."""
-    cli("continue", "mu", "-1", "1", "--model", normal_form, "--out", tmp_path, "--quiet")
-    return tmp_path / "branches.nc"
+def saved(normal_form, tmp_path):
+    """The file of a diagram of the normal form, kept by its path."""
+    branch = rb.continue_equilibria(rb.load_model(str(normal_form)), "mu", (-1, 1))
+    return rb.save(rb.Diagram(branch), tmp_path / "branches.nc")
 
 
-def test_a_file_is_certified_to_a_proof(cli, saved):
+def test_a_diagram_of_continue_is_certified_to_a_proof(cli, normal_form, tmp_path):
+    cli("continue", "mu", "-0.1", "0.1", "--model", normal_form, "--out", tmp_path, "--quiet")
+    saved = tmp_path / "branches.nc"
     told = cli("certify", saved, "--proof", "--json")
     assert told.status == 0, told.err
     found = json.loads(told.out)

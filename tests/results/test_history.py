@@ -12,7 +12,7 @@ from racs_bif.results.provenance import SystemInfo
 
 @pytest.fixture
 def history():
-    t = np.linspace(0.0, 8.0, 801)
+    t = np.linspace(0.0, 16.0, 1601)
     outputs = {"force": np.sin(3.0 * t), "time": t**2}
     outputs["force"][0] = np.nan
     return TimeHistory(
@@ -43,7 +43,7 @@ def test_it_is_saved_bit_by_bit_and_opens_in_xarray(history, tmp_path):
         assert data["x"].sel(time=1.0) == history.column("x")[100]
         assert data["time_"].attrs["long_name"] == "time"
     bare = replace(
-        history, state_names=(), states=np.empty((801, 0)), inputs={}, errors={}, step=np.nan
+        history, state_names=(), states=np.empty((1601, 0)), inputs={}, errors={}, step=np.nan
     )
     assert load(save(bare, tmp_path / "bare.nc")) == bare
 
@@ -58,7 +58,7 @@ def test_columns_have_names_units_and_a_table(history):
     table = history.to_dataframe()
     assert table.index.name == "time"
     assert list(table.columns) == list(history.names)
-    assert "801 samples to 8 s, exact operator by bdf2" in repr(history)
+    assert "1601 samples to 16 s, exact operator by bdf2" in repr(history)
 
 
 def test_extremes_and_period(history):
@@ -77,7 +77,7 @@ def test_the_summary(history):
     assert told["simulation"]["step"] == 0.01
     assert told["columns"]["x"] == {
         "unit": "m",
-        "last": pytest.approx(np.cos(16.0) + 1.0),
+        "last": pytest.approx(np.cos(32.0) + 1.0),
         "error": 1e-5,
         "min": pytest.approx(0.0, abs=1e-7),
         "max": pytest.approx(2.0),

@@ -1,0 +1,343 @@
+"""Edges of the search's cells: which boundaries cross them, and seeds of those still missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from racs_bif.charts.boundary import BETWEEN, Boundary, Seed
+from racs_bif.charts.lattice import NOTHING, UNCOUNTED, Lattice
+from racs_bif.errors import ConvergenceError
+from racs_bif.fractional.exact_fold import solve_fold
+from racs_bif.fractional.exact_hopf import solve_hopf
+from racs_bif.numerics.bracketing import root
+from racs_bif.symbolic.paths import ParameterPath
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from racs_bif.charts.lattice import Key
+    from racs_bif.charts.plane import Plane
+    from racs_bif.symbolic.field import Array
+
+_HALVINGS = 12
+_BESIDE = 1e-4
+_SAME_STATE = 0.02
+_SAME_PLACE = 1e-6
+_BEYOND = 1e-6
+
+
+class EdgePath(ParameterPath):
+    """The straight line between two places of a plane, its parameter from 0 to 1."""
+
+    def __init__(self, plane: Plane, start: Array, end: Array) -> None:
+        self.names = ("the place between two nodes",)
+        self._path = plane.path
+        self._start, self._end = plane.values(start), plane.values(end)
+
+    def _at(self, active: ArrayLike) -> Array:
+        share = float(np.atleast_1d(np.asarray(active, dtype=float))[0])
+        return np.asarray((1.0 - share) * self._start + share * self._end)
+
+    def vector(self, active: ArrayLike) -> Array:
+        """Return the base parameters (np,)."""
+        return self._path.vector(self._at(active))
+
+    def direction(self, active: ArrayLike, index: int = 0) -> Array:
+        """Return their derivative (np,)."""
+        del index
+        at, moved = self._at(active), self._end - self._start
+        parts = [moved[k] * self._path.direction(at, k) for k in range(2) if moved[k]]
+        return np.asarray(sum(parts))
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where a boundary crosses an edge.
+
+    Parameters
+    ----------
+    share : float
+        How far along the edge.
+    boundary : int
+        Which boundary.
+    jump : int
+        Change of the count along the edge; 0 for a fold.
+    """
+
+    share: float
+    boundary: int
+    jump: int
+
+
+@dataclass
+class _Bracket:
+    """A stretch of an edge: ends, how the counts there differ from what is explained, and X."""
+
+    low: float
+    high: float
+    wrong: tuple[int, int]
+    X: tuple[Array, Array]
+    omega: tuple[float, float]
+
+
+class Edge:
+    """A straight line between two nodes.
+
+    Parameters
+    ----------
+    lattice : Lattice
+        The nodes.
+    start, end : (int, int)
+        Which.
+    """
+
+    def __init__(self, lattice: Lattice, start: Key, end: Key) -> None:
+        if not lattice.known(start):
+            start, end = end, start
+        self.lattice = lattice
+        self.a, self.b = lattice.nodes[start], lattice.nodes[end]
+        self.start, self.end = lattice.place(start), lattice.place(end)
+        self.path = EdgePath(lattice.plane, self.start, self.end)
+        self._jumps: dict[tuple[int, float], int] = {}
+
+    @property
+    def counted(self) -> bool:
+        """Whether both ends have counts."""
+        return self.a.count >= 0 and self.b.count >= 0
+
+    @property
+    def ends(self) -> bool:
+        """Whether the equilibrium ends between its ends."""
+        return self.a.count != NOTHING and self.b.count == NOTHING
+
+    def follow(self, shares: Array) -> tuple[Array, Array]:
+        """Return equilibria (size, k) at shares of the edge, continued from its start, and reach."""
+        k = len(shares)
+        X, begin = np.repeat(self.a.X[:, None], k, axis=1), np.repeat(self.start[:, None], k, axis=1)
+        end = begin + shares * (self.end - self.start)[:, None]
+        return self.lattice.sheet.follow(X, begin, end)
+
+    def count(self, shares: Array) -> tuple[np.ndarray, Array, Array]:
+        """Return counts (k,), equilibria (size, k) and frequencies (k,) at shares of the edge."""
+        X, reached = self.follow(shares)
+        at = self.start[:, None] + shares * (self.end - self.start)[:, None]
+        counts, _ = self.lattice.counter(X, self.lattice.plane.vectors(at))
+        unstable = np.where(reached == 1.0, counts.unstable, NOTHING)
+        return unstable, X, counts.omega
+
+    def crossings(self, boundaries: list[Boundary]) -> list[Crossing]:
+        """Return where boundaries cross, in order; those of other equilibria are left out."""
+        found: list[Crossing] = []
+        for k, boundary in enumerate(boundaries):
+            for share, place in _intersections(self.start, self.end, boundary):
+                if boundary.kind == "fold":
+                    found.append(Crossing(share, k, 0))
+                elif self._ours(share, boundary, place):
+                    found.append(Crossing(share, k, self._jump(share, k, boundary, place)))
+        return sorted(found, key=lambda crossing: crossing.share)
+
+    def _ours(self, share: float, boundary: Boundary, place: float) -> bool:
+        X, reached = self.follow(np.array([share]))
+        states = between(boundary.states, place)
+        return reached[0] == 1.0 and alike(X[:, 0], states, self.lattice.scale)
+
+    def _jump(self, share: float, index: int, boundary: Boundary, place: float) -> int:
+        gradient = between(boundary.gradient, place)
+        if np.all(np.isfinite(gradient)):
+            return 2 if float(gradient @ (self.end - self.start)) > 0.0 else -2
+        key = (index, round(share, 9))
+        if key not in self._jumps:
+            beside = _BESIDE / float(np.hypot(*(self.end - self.start)))
+            both = np.clip(np.array([share - beside, share + beside]), 0.0, 1.0)
+            unstable = self.count(both)[0]
+            self._jumps[key] = int(unstable[1] - unstable[0]) if unstable.min() >= 0 else 0
+        return self._jumps[key]
+
+    def explained(self, boundaries: list[Boundary]) -> bool:
+        """Say whether the boundaries account for how the ends differ."""
+        if self.ends:
+            return any(boundaries[c.boundary].kind == "fold" for c in self.crossings(boundaries))
+        if not self.counted:
+            return True
+        crossed = self.crossings(boundaries)
+        return self.b.count - self.a.count == sum(crossing.jump for crossing in crossed)
+
+    def seed(self, boundaries: list[Boundary]) -> Seed | None:
+        """Return a point of a boundary that is not there yet, None where none is found."""
+        if self.ends:
+            return self._fold()
+        crossed = self.crossings(boundaries)
+
+        def explained(share: float) -> int:
+            return self.a.count + sum(c.jump for c in crossed if c.share < share)
+
+        bracket = _Bracket(
+            0.0,
+            1.0,
+            (0, self.b.count - explained(1.0 + _BEYOND)),
+            (self.a.X, self.b.X),
+            (self.a.omega, self.b.omega),
+        )
+        for _ in range(_HALVINGS):
+            found = self._solve(bracket)
+            if found is not None and not self._there(found, boundaries):
+                return found
+            middle = 0.5 * (bracket.low + bracket.high)
+            if any(abs(c.share - middle) < 1e-3 * (bracket.high - bracket.low) for c in crossed):
+                middle += 0.11 * (bracket.high - bracket.low)
+            unstable, X, omega = self.count(np.array([middle]))
+            if unstable[0] in {NOTHING, UNCOUNTED}:
+                return None
+            wrong = int(unstable[0]) - explained(middle)
+            at = X[:, 0], float(omega[0])
+            if wrong != bracket.wrong[0]:
+                bracket = _Bracket(
+                    bracket.low,
+                    middle,
+                    (bracket.wrong[0], wrong),
+                    (bracket.X[0], at[0]),
+                    (bracket.omega[0], at[1]),
+                )
+            else:
+                bracket = _Bracket(
+                    middle,
+                    bracket.high,
+                    (wrong, bracket.wrong[1]),
+                    (at[0], bracket.X[1]),
+                    (at[1], bracket.omega[1]),
+                )
+        return None
+
+    def _solve(self, bracket: _Bracket) -> Seed | None:
+        odd = (bracket.wrong[1] - bracket.wrong[0]) % 2
+        return self._static(bracket) if odd else self._hopf(bracket)
+
+    def _hopf(self, bracket: _Bracket) -> Seed | None:
+        exact = self.lattice.plane.system.exact
+        width = bracket.high - bracket.low
+        guesses = [
+            (bracket.low + share * width, X, omega)
+            for omega in bracket.omega
+            for share, X in ((0.5, 0.5 * (bracket.X[0] + bracket.X[1])),)
+            if omega > 0.0
+        ]
+        for share, X, omega in guesses:
+            try:
+                hopf = solve_hopf(exact, self.path, X, share, omega)
+            except (ConvergenceError, ArithmeticError, np.linalg.LinAlgError):
+                continue
+            slack = 1e-9
+            inside = bracket.low - slack <= hopf.value <= bracket.high + slack
+            if inside and self._same_sheet(hopf.value, hopf.X):
+                return Seed("hopf", hopf.X, self._place(hopf.value), hopf.omega)
+        return None
+
+    def _static(self, bracket: _Bracket) -> Seed | None:
+        sheet = self.lattice.sheet
+
+        def sign(share: float, low: float, high: float) -> tuple[float, float]:
+            del low, high
+            X, reached = self.follow(np.array([share]))
+            if reached[0] < 1.0:
+                return share, float("nan")
+            at = self._place(share)[:, None]
+            jacobian = sheet.equations(X, self.lattice.plane.vectors(at))[1][0]
+            scale = np.linalg.norm(jacobian, axis=1, keepdims=True)
+            return share, float(np.linalg.det(jacobian / np.where(scale > 0.0, scale, 1.0)))
+
+        low, high = bracket.low, bracket.high
+        ends = sign(low, low, high)[1], sign(high, low, high)[1]
+        if not ends[0] * ends[1] < 0.0:
+            return None
+        found = root(sign, (low, high, *ends), 1e-12)
+        if found is None:
+            return None
+        share = 0.5 * (found[0] + found[1])
+        X, _ = self.follow(np.array([share]))
+        return Seed("static", X[:, 0], self._place(share))
+
+    def _fold(self) -> Seed | None:
+        X, reached = self.follow(np.ones(1))
+        exact = self.lattice.plane.system.exact
+        try:
+            fold = solve_fold(exact, self.path, X[:, 0], float(reached[0]))
+        except (ConvergenceError, ArithmeticError, np.linalg.LinAlgError):
+            return None
+        if not -_BEYOND <= fold.value <= 1.0 + _BEYOND:
+            return None
+        return Seed("fold", fold.X, self._place(fold.value))
+
+    def _place(self, share: float) -> Array:
+        return np.clip(self.start + share * (self.end - self.start), 0.0, 1.0)
+
+    def _same_sheet(self, share: float, X: Array) -> bool:
+        own, reached = self.follow(np.array([min(max(share, 0.0), 1.0)]))
+        return reached[0] == 1.0 and alike(own[:, 0], X, self.lattice.scale)
+
+    def _there(self, seed: Seed, boundaries: list[Boundary]) -> bool:
+        """Say whether a seed is on a boundary that was traced already."""
+        for boundary in boundaries:
+            if boundary.kind != seed.kind:
+                continue
+            for share, place in _intersections(self.start, self.end, boundary):
+                near = np.hypot(*(self._place(share) - seed.place)) < 10.0 * _BESIDE
+                omega = between(boundary.omega, place)
+                if near and (seed.kind != "hopf" or abs(omega - seed.omega) < 0.02 * omega):
+                    return True
+        return False
+
+
+def alike(a: Array, b: Array, scale: Array) -> bool:
+    """Say whether two states are those of the same equilibrium, but for interpolation."""
+    return bool(np.all(np.abs(a - b) <= _SAME_STATE * scale))
+
+
+def between(rows: Array, at: float) -> Array:
+    """Return a row (or number) between two rows, `at` counted in rows."""
+    k = min(int(at), len(rows) - 2)
+    return np.asarray((1.0 - (at - k)) * rows[k] + (at - k) * rows[k + 1])
+
+
+def _intersections(start: Array, end: Array, boundary: Boundary) -> list[tuple[float, float]]:
+    """Return how far along a straight line a boundary crosses it, and where that is on it.
+
+    The latter is counted in the boundary's points.
+    """
+    line = boundary.line
+    if len(line) < 2:
+        return []
+    line, shift = _beyond_box(line, closed=boundary.closed)
+    q, s = line[:-1], np.diff(line, axis=0)
+    r = end - start
+    across = r[0] * s[:, 1] - r[1] * s[:, 0]
+    off = q - start
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (off[:, 0] * s[:, 1] - off[:, 1] * s[:, 0]) / across
+        along = (off[:, 0] * r[1] - off[:, 1] * r[0]) / across
+    hit = (share >= 0.0) & (share <= 1.0) & (along >= 0.0) & (along < 1.0)
+    found = []
+    for k in np.flatnonzero(hit):
+        at = (int(k) - shift + float(along[k])) / BETWEEN
+        found.append((float(share[k]), min(max(at, 0.0), len(boundary.values) - 1.0)))
+    return found
+
+
+def _beyond_box(line: Array, *, closed: bool) -> tuple[Array, int]:
+    """Return a line that goes on a little beyond the box where it ends at it."""
+    if closed:
+        return line, 0
+    parts, shift = [line], 0
+    for place, inner in ((0, 1), (-1, -2)):
+        end = line[place]
+        if np.any((end <= 1e-9) | (end >= 1.0 - 1e-9)):
+            out = end - line[inner]
+            further = (end + _BEYOND * out / max(float(np.hypot(*out)), 1e-300))[None, :]
+            if place == 0:
+                parts.insert(0, further)
+                shift = 1
+            else:
+                parts.append(further)
+    return np.vstack(parts), shift

@@ -1,0 +1,217 @@
+"""The search's places: equilibria and index counts on a lattice that is refined where needed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from racs_bif.charts.counting import Counts, count_right
+from racs_bif.charts.sheet import Sheet
+from racs_bif.charts.sums import LARGEST, expand
+from racs_bif.errors import ConvergenceError, ModelError
+from racs_bif.fractional.mikhailov import mikhailov_count
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from racs_bif.charts.plane import Plane
+    from racs_bif.symbolic.field import Array
+
+NOTHING, UNCOUNTED = -2, -1
+"""No equilibrium was found; there is one, but its roots cannot be counted."""
+Key = tuple[int, int]
+_AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
+_TRIALS = (0.5, 0.0, 1.0, 0.25, 0.75)
+
+
+@dataclass(frozen=True)
+class Node:
+    """A place of the lattice.
+
+    Parameters
+    ----------
+    count : int
+        Unstable roots, or `NOTHING`, or `UNCOUNTED`.
+    X : array (size,)
+        The equilibrium.
+    margin, static : float
+        Relative distance of a root to the imaginary axis, and of one to s = 0.
+    omega : float
+        Frequency at which the margin is least.
+    """
+
+    count: int
+    X: Array
+    margin: float
+    static: float
+    omega: float
+
+
+class Counter:
+    """Counts unstable roots at equilibria, and how many determinants that took.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        Its plane and its model.
+    """
+
+    def __init__(self, sheet: Sheet) -> None:
+        self.sheet = sheet
+        self.evaluations = 0
+
+    def __call__(self, X: Array, P: Array) -> tuple[Counts, Array]:
+        """Return counts and static margins (N,) at equilibria X (size, N), parameters P (np, N)."""
+        core = self.sheet.core(X, P)
+        static = _static_margin(self.sheet.equations(X, P)[1])
+        if self.sheet.size > LARGEST:
+            counts = self._one_by_one(X, P)
+        else:
+            counts = count_right(expand(core, self.sheet.laws(P)))
+        self.evaluations += int(counts.evaluations.sum())
+        return counts, static
+
+    def _one_by_one(self, X: Array, P: Array) -> Counts:
+        """Count for models too large for all their minors; no margin is known then."""
+        exact, n = self.sheet.plane.system.exact, X.shape[1]
+        unstable, evaluations = np.full(n, UNCOUNTED), np.zeros(n, dtype=np.int64)
+        for k in range(n):
+            try:
+                found = mikhailov_count(exact, X[:, k], P[:, k])
+            except ConvergenceError:
+                continue
+            unstable[k] = UNCOUNTED if found.unstable is None else found.unstable
+            evaluations[k] = found.evaluations
+        return Counts(unstable, np.ones(n), np.zeros(n), evaluations)
+
+
+class Lattice:
+    """Nodes at whole numbers from 0 to ``2**depth`` in both directions.
+
+    Parameters
+    ----------
+    plane : Plane
+        The plane.
+    depth : int
+        Of the finest lattice.
+    """
+
+    def __init__(self, plane: Plane, depth: int) -> None:
+        self.plane, self.side = plane, 2**depth
+        self.sheet = Sheet(plane)
+        self.counter = Counter(self.sheet)
+        self.nodes: dict[Key, Node] = {}
+        self._scale: Array | None = None
+
+    def place(self, key: Key) -> Array:
+        """Return the place (2,) of a node in the unit square."""
+        return np.array(key, dtype=float) / self.side
+
+    def known(self, key: Key) -> bool:
+        """Say whether there is an equilibrium at a node."""
+        return key in self.nodes and self.nodes[key].count != NOTHING
+
+    @property
+    def scale(self) -> Array:
+        """Largest magnitudes (size,) of the states at the nodes."""
+        if self._scale is None:
+            X = np.array([node.X for node in self.nodes.values() if node.count != NOTHING])
+            scale = np.abs(X).max(axis=0)
+            self._scale = np.maximum(scale, 1e-9 * max(float(scale.max()), 1e-3))
+        return self._scale
+
+    def begin(self, spacing: int) -> None:
+        """Fill the lattice of a spacing, from wherever the model's guess leads to an equilibrium.
+
+        Raises
+        ------
+        ConvergenceError
+            If it leads to none, anywhere.
+        """
+        place, X = self._first()
+        keys = [
+            (i, j)
+            for i in range(0, self.side + 1, spacing)
+            for j in range(0, self.side + 1, spacing)
+        ]
+        keys.sort(key=lambda key: float(np.hypot(*(self.place(key) - place))))
+        for key in keys[:4]:
+            at = self.place(key)
+            found, reached = self.sheet.follow(X[:, None], place[:, None], at[:, None])
+            if reached[0] == 1.0:
+                self._record([key], found)
+                break
+        else:
+            raise ConvergenceError(self._lost())
+        self.add(keys, spacing)
+
+    def _first(self) -> tuple[Array, Array]:
+        """Return a place at which there is an equilibrium, and the equilibrium."""
+        places = [] if self.plane.nominal is None else [self.plane.nominal]
+        places += [np.array([x, y]) for x in _TRIALS for y in _TRIALS]
+        system = self.plane.system
+        for place in places:
+            p = self.plane.vectors(place[:, None])[:, 0]
+            try:
+                return place, system.exact_point(system.equilibrium(p), p)
+            except (ConvergenceError, ModelError):
+                continue
+        raise ConvergenceError(self._lost())
+
+    def _lost(self) -> str:
+        spans = " and ".join(
+            f"{name} {low:g} to {high:g}"
+            for name, (low, high) in zip(self.plane.names, self.plane.spans, strict=True)
+        )
+        return (
+            f"no equilibrium of model '{self.plane.system.name}' found anywhere in {spans}; give "
+            "the model a better guess, or other spans"
+        )
+
+    def add(self, keys: Iterable[Key], spacing: int) -> None:
+        """Add nodes, each continued from a neighbour at a spacing that has an equilibrium."""
+        pending = sorted(set(keys) - set(self.nodes))
+        tried: set[tuple[Key, Key]] = set()
+        while pending:
+            jobs = []
+            for key in pending:
+                around = ((key[0] + spacing * i, key[1] + spacing * j) for i, j in _AROUND)
+                source = next((k for k in around if self.known(k) and (key, k) not in tried), None)
+                if source is not None:
+                    jobs.append((key, source))
+            if not jobs:
+                break
+            tried.update(jobs)
+            start = np.array([self.place(source) for _, source in jobs]).T
+            end = np.array([self.place(key) for key, _ in jobs]).T
+            X = np.array([self.nodes[source].X for _, source in jobs]).T
+            X, reached = self.sheet.follow(X, start, end)
+            good = np.flatnonzero(reached == 1.0)
+            if len(good):
+                self._record([jobs[k][0] for k in good], X[:, good])
+            pending = [key for key in pending if key not in self.nodes]
+        nowhere = np.full(self.sheet.size, np.nan)
+        for key in pending:
+            self.nodes[key] = Node(NOTHING, nowhere, np.nan, np.nan, np.nan)
+
+    def _record(self, keys: list[Key], X: Array) -> None:
+        self._scale = None
+        at = np.array([self.place(key) for key in keys]).T
+        counts, static = self.counter(X, self.plane.vectors(at))
+        for k, key in enumerate(keys):
+            self.nodes[key] = Node(
+                int(counts.unstable[k]),
+                X[:, k].copy(),
+                float(counts.margin[k]),
+                float(static[k]),
+                float(counts.omega[k]),
+            )
+
+
+def _static_margin(jacobian: Array) -> Array:
+    """Return |det| over the product of the rows' lengths (N,), with its sign."""
+    lengths = np.linalg.norm(jacobian, axis=2, keepdims=True)
+    lengths[lengths == 0.0] = 1.0
+    return np.asarray(np.linalg.det(jacobian / lengths))

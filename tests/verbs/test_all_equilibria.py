@@ -1,0 +1,88 @@
+"""Branches of equilibria that cross, and those that nothing leads to."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import racs_bif as rb
+
+
+def states_at(diagram, parameter, value, state):
+    """Return the values of a state where branches pass a value of the parameter, sorted."""
+    found = []
+    for branch in diagram:
+        x, y = branch.column(parameter), branch.column(state)
+        for a, b, ya, yb in zip(x[:-1], x[1:], y[:-1], y[1:], strict=True):
+            if min(a, b) < value <= max(a, b):
+                found.append(ya + (yb - ya) * (value - a) / (b - a))
+    return np.sort(found)
+
+
+@pytest.fixture(scope="module")
+def vehicle():
+    return rb.all_equilibria(rb.load_model("racs"), "u", (5, 30))
+
+
+def test_the_vehicle_has_five_equilibria_below_20_9_metres_a_second(vehicle):
+    delta = states_at(vehicle, "u", 20.0, "delta_c")
+    assert len(delta) == 5
+    assert np.all(np.abs(delta[[0, 1, 3, 4]]) > 0.13)
+    assert abs(delta[2]) < 0.01
+    assert len(states_at(vehicle, "u", 25.0, "delta_c")) == 3
+    assert len(states_at(vehicle, "u", 29.0, "delta_c")) == 1
+
+
+def test_their_folds_and_hopf_points_are_where_they_were_computed(vehicle):
+    folds = sorted(p.parameters["u"] for p in vehicle.special_points if p.label == "LP")
+    assert folds == pytest.approx([20.89, 28.10], abs=0.01)  # model.md, section 4
+    hopf = [p.exact.parameters["u"] for p in vehicle.special_points if p.label == "H"]
+    assert hopf[0] == pytest.approx(10.2, rel=1e-9)
+    assert all(7.0 < u < 7.15 for u in hopf[1:])
+    assert len(hopf) == 3
+
+
+def test_the_first_branch_is_the_one_through_the_guess(vehicle):
+    assert [branch.connected for branch in vehicle] == [True, False, False]
+    assert abs(vehicle["EQ1"].column("delta_c")).max() < 0.01
+
+
+def test_a_pitchfork_leads_to_its_other_branch():
+    model = rb.model_from_strings(
+        "pitchfork", {"x": "p*x-x**3"}, parameters={"p": -1.0}, guess={"x": 0.0}
+    )
+    diagram = rb.all_equilibria(model, "p", (-1, 1), probes=0)
+    points = [p for p in diagram.special_points if p.label == "BP"]
+    assert points[0].parameters["p"] == pytest.approx(0.0, abs=1e-9)
+    assert points[0].kind == "pitchfork"
+    assert states_at(diagram, "p", 0.49, "x") == pytest.approx([-0.7, 0.0, 0.7], abs=2e-3)
+    assert all(branch.connected for branch in diagram)
+
+
+def test_a_transcritical_point_leads_to_its_other_branch():
+    model = rb.model_from_strings(
+        "transcritical", {"x": "p*x-x**2", "y": "-y"}, parameters={"p": -1.0}, guess={"x": 0.0}
+    )
+    diagram = rb.all_equilibria(model, "p", (-1, 1), probes=0)
+    assert [p.kind for p in diagram.special_points if p.label == "BP"][0] == "transcritical"
+    assert states_at(diagram, "p", 0.5, "x") == pytest.approx([0.0, 0.5], abs=1e-6)
+    assert states_at(diagram, "p", -0.5, "x") == pytest.approx([-0.5, 0.0], abs=1e-6)
+
+
+def test_a_branch_that_nothing_leads_to_is_found_once():
+    """x = p and the circle (x-3)^2 + p^2 = 1/4 do not touch."""
+    model = rb.model_from_strings(
+        "isola", {"x": "(p-x)*((x-3)**2+p**2-0.25)"}, parameters={"p": -0.2}, guess={"x": -0.2}
+    )
+    diagram = rb.all_equilibria(model, "p", (-1, 1))
+    assert len(diagram) == 2
+    assert not diagram["EQ2"].connected
+    circle = diagram["EQ2"]
+    p, x = circle.column("p"), circle.column("x")
+    assert (x - 3) ** 2 + p**2 == pytest.approx(0.25, abs=1e-8)
+    assert "closed" in circle.stopped
+    assert len([q for q in circle.special if q.label == "LP"]) == 2
+
+
+def test_without_probes_only_what_is_connected_is_followed():
+    diagram = rb.all_equilibria(rb.load_model("racs"), "u", (5, 12), probes=0)
+    assert [branch.name for branch in diagram] == ["EQ1"]
