@@ -210,7 +210,7 @@ def _boundary(
         line=line,
         closed=closed,
         stopped=" ".join(dict.fromkeys(end.value for end in ends)),
-        complete=all(end.complete for end in ends),
+        complete=all(end.complete or end is Stopped.STATIC for end in ends),
         special=special,
         evaluations=problem.evaluations,
     )

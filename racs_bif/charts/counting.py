@@ -178,7 +178,7 @@ def _on_axis(tally: _Tally) -> Array:
         return np.asarray(x + 1j * _QUARTER)
 
     if sums.exponents.shape[1] > 1:
-        return _around(tally, (contour, outer, inner), None)
+        return _around(tally, (contour, outer, inner), None, np.ones(len(sums), dtype=bool))
     # One sweep over places that all share, by products of matrices.
     top, bottom = float(outer.max()), float(inner.min())
     x = np.linspace(top, bottom, max(4, int(np.ceil((top - bottom) / _SPACING)) + 1))
@@ -196,12 +196,14 @@ def _on_axis(tally: _Tally) -> Array:
     right = tuple(c[1:].reshape(-1) for c in columns)
     tally.follow(_Steps(owner, left, right), contour)
     ends = np.full(len(sums), top), np.full(len(sums), bottom)
-    return _closed(tally, *(end + 1j * _QUARTER for end in ends))
+    return _closed(tally, *(end + 1j * _QUARTER for end in ends), np.ones(len(sums), dtype=bool))
 
 
 def _on_lines(tally: _Tally, above: Array) -> Array:
     """Return the change of the phase over pi around what is right of the lines, its upper half."""
     inner, outer = tally.sums.radii()
+    # Where every power is whole there is no cut, and the contour ends on the real axis.
+    whole = bool(np.all(tally.sums.exponents == np.round(tally.sums.exponents)))
     size = np.maximum(np.abs(above), 1e-280)
     outer = np.maximum(outer, np.log(size) + 1.0)
     begin = np.arcsinh(np.sqrt(np.exp(2.0 * outer) - size**2) / size)
@@ -214,16 +216,25 @@ def _on_lines(tally: _Tally, above: Array) -> Array:
     def lip(_: Places, x: Array) -> Complex:
         return np.asarray(x + 1j * np.pi)
 
-    cut = np.flatnonzero((np.log(size) > inner) & (above < 0.0))
-    return _around(tally, (upright, begin, end), (lip, np.log(size), inner, cut))
+    within = np.log(size) <= inner
+    cut = np.flatnonzero(~within & (above < 0.0) & (not whole))
+    turns = _around(tally, (upright, begin, end), (lip, np.log(size), inner, cut), within)
+    # Roots s = 0 that such a contour goes around are left out.
+    around = whole & ~within & (above < 0.0)
+    return np.asarray(turns - np.where(around, tally.sums.leading()[2], 0.0))
 
 
 def _around(
     tally: _Tally,
     down: tuple[Callable[[Places, Array], Complex], Array, Array],
     lip: tuple[Callable[[Places, Array], Complex], Array, Array, Places] | None,
+    arrives: NDArray[np.bool_],
 ) -> Array:
-    """Follow the line down, then the lip of the cut where there is one."""
+    """Follow the line down, then the lip of the cut where there is one.
+
+    `arrives` says which contours end on the inner circle even without a cut.
+    """
+    arrives = arrives.copy()
     contour, begin, end = down
     everyone = np.arange(len(tally.sums))
     tally.follow(_divided(tally, everyone, contour, begin, end), contour)
@@ -232,16 +243,21 @@ def _around(
         along, start, inner, cut = lip
         tally.follow(_divided(tally, cut, along, start, inner), along)
         last[cut] = inner[cut] + 1j * np.pi
-    return _closed(tally, contour(everyone, begin), last)
+        arrives[cut] = True
+    return _closed(tally, contour(everyone, begin), last, arrives)
 
 
-def _closed(tally: _Tally, top: Complex, last: Complex) -> Array:
-    """Add the arcs beyond the first and behind the last place t, where one power dominates."""
+def _closed(
+    tally: _Tally, top: Complex, last: Complex, arrives: NDArray[np.bool_]
+) -> Array:
+    """Add the arcs beyond the first and behind the last place t, where one power dominates.
+
+    Contours that do not arrive at the inner circle end on the real axis, where the determinant is
+    real.
+    """
     sums = tally.sums
     e_high, high, e_low, low = sums.leading()
     phase = tally.phase + e_high * top.imag + _beyond(sums, top, e_high, high)
-    # A line right of s = 0 ends on the real axis, where the determinant is real.
-    arrives = last.imag > 0.0
     inwards = e_low * last.imag + _beyond(sums, last, e_low, low)
     return np.asarray((phase - np.where(arrives, inwards, 0.0)) / np.pi)
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.charts.boundary import BETWEEN, Boundary, Seed
-from racs_bif.charts.lattice import NOTHING, UNCOUNTED, Lattice
+from racs_bif.charts.lattice import NOTHING, UNCOUNTED, Lattice, Node
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
@@ -18,7 +18,6 @@ from racs_bif.symbolic.paths import ParameterPath
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from racs_bif.charts.lattice import Key
     from racs_bif.charts.plane import Plane
     from racs_bif.symbolic.field import Array
 
@@ -90,18 +89,36 @@ class Edge:
     ----------
     lattice : Lattice
         The nodes.
-    start, end : (int, int)
-        Which.
+    start, end : Node
+        Which; one of them has an equilibrium.
     """
 
-    def __init__(self, lattice: Lattice, start: Key, end: Key) -> None:
-        if not lattice.known(start):
+    def __init__(self, lattice: Lattice, start: Node, end: Node) -> None:
+        if start.count == NOTHING:
             start, end = end, start
         self.lattice = lattice
-        self.a, self.b = lattice.nodes[start], lattice.nodes[end]
-        self.start, self.end = lattice.place(start), lattice.place(end)
+        self.a, self.b = start, end
+        self.start, self.end = start.place, end.place
         self.path = EdgePath(lattice.plane, self.start, self.end)
-        self._jumps: dict[tuple[int, float], int] = {}
+        self._crossings: list[list[Crossing]] = []
+
+    @property
+    def torn(self) -> bool:
+        """Whether the equilibria at its ends are not continued into each other."""
+        if NOTHING in {self.a.count, self.b.count}:
+            return False
+        return not self._same_sheet(1.0, self.b.X)
+
+    def beyond(self) -> tuple[Edge, Edge]:
+        """Return straight lines from both ends through the other one to the box."""
+        lines = []
+        for a, b in ((self.a, self.b), (self.b, self.a)):
+            way = b.place - a.place
+            with np.errstate(divide="ignore"):
+                room = np.where(way > 0.0, 1.0 - a.place, a.place) / np.abs(way)
+            far = np.clip(a.place + way * float(room.min()), 0.0, 1.0)
+            lines.append(Edge(self.lattice, a, replace(b, count=NOTHING, place=far)))
+        return lines[0], lines[1]
 
     @property
     def counted(self) -> bool:
@@ -130,31 +147,34 @@ class Edge:
 
     def crossings(self, boundaries: list[Boundary]) -> list[Crossing]:
         """Return where boundaries cross, in order; those of other equilibria are left out."""
-        found: list[Crossing] = []
-        for k, boundary in enumerate(boundaries):
+        for k in range(len(self._crossings), len(boundaries)):
+            boundary = boundaries[k]
+            found = []
             for share, place in _intersections(self.start, self.end, boundary):
                 if boundary.kind == "fold":
                     found.append(Crossing(share, k, 0))
                 elif self._ours(share, boundary, place):
-                    found.append(Crossing(share, k, self._jump(share, k, boundary, place)))
-        return sorted(found, key=lambda crossing: crossing.share)
+                    found.append(Crossing(share, k, self._jump(share, boundary, place)))
+            self._crossings.append(found)
+        everything = [crossing for found in self._crossings for crossing in found]
+        return sorted(everything, key=lambda crossing: crossing.share)
 
     def _ours(self, share: float, boundary: Boundary, place: float) -> bool:
-        X, reached = self.follow(np.array([share]))
-        states = between(boundary.states, place)
-        return reached[0] == 1.0 and alike(X[:, 0], states, self.lattice.scale)
+        """Say whether a boundary belongs to the equilibrium that the edge's ends have."""
+        before = max(share - self._beside, 0.0) if boundary.kind == "static" else share
+        return self._same_sheet(before, between(boundary.states, place))
 
-    def _jump(self, share: float, index: int, boundary: Boundary, place: float) -> int:
+    @property
+    def _beside(self) -> float:
+        return _BESIDE / float(np.hypot(*(self.end - self.start)))
+
+    def _jump(self, share: float, boundary: Boundary, place: float) -> int:
         gradient = between(boundary.gradient, place)
         if np.all(np.isfinite(gradient)):
             return 2 if float(gradient @ (self.end - self.start)) > 0.0 else -2
-        key = (index, round(share, 9))
-        if key not in self._jumps:
-            beside = _BESIDE / float(np.hypot(*(self.end - self.start)))
-            both = np.clip(np.array([share - beside, share + beside]), 0.0, 1.0)
-            unstable = self.count(both)[0]
-            self._jumps[key] = int(unstable[1] - unstable[0]) if unstable.min() >= 0 else 0
-        return self._jumps[key]
+        both = np.clip(np.array([share - self._beside, share + self._beside]), 0.0, 1.0)
+        unstable = self.count(both)[0]
+        return int(unstable[1] - unstable[0]) if unstable.min() >= 0 else 0
 
     def explained(self, boundaries: list[Boundary]) -> bool:
         """Say whether the boundaries account for how the ends differ."""
@@ -261,6 +281,8 @@ class Edge:
 
     def _fold(self) -> Seed | None:
         X, reached = self.follow(np.ones(1))
+        if reached[0] == 1.0:
+            return None
         exact = self.lattice.plane.system.exact
         try:
             fold = solve_fold(exact, self.path, X[:, 0], float(reached[0]))

@@ -23,6 +23,7 @@ NOTHING, UNCOUNTED = -2, -1
 """No equilibrium was found; there is one, but its roots cannot be counted."""
 Key = tuple[int, int]
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
+_ASIDE = (0.0137, 0.0419, 0.1093)
 _TRIALS = (0.5, 0.0, 1.0, 0.25, 0.75)
 
 
@@ -40,6 +41,8 @@ class Node:
         Relative distance of a root to the imaginary axis, and of one to s = 0.
     omega : float
         Frequency at which the margin is least.
+    place : array (2,)
+        Where it is: a little aside where a root was on the axis.
     """
 
     count: int
@@ -47,6 +50,7 @@ class Node:
     margin: float
     static: float
     omega: float
+    place: Array
 
 
 class Counter:
@@ -106,8 +110,9 @@ class Lattice:
         self._scale: Array | None = None
 
     def place(self, key: Key) -> Array:
-        """Return the place (2,) of a node in the unit square."""
-        return np.array(key, dtype=float) / self.side
+        """Return the place (2,) of a node, present or not, in the unit square."""
+        node = self.nodes.get(key)
+        return np.array(key, dtype=float) / self.side if node is None else node.place
 
     def known(self, key: Key) -> bool:
         """Say whether there is an equilibrium at a node."""
@@ -194,19 +199,35 @@ class Lattice:
             pending = [key for key in pending if key not in self.nodes]
         nowhere = np.full(self.sheet.size, np.nan)
         for key in pending:
-            self.nodes[key] = Node(NOTHING, nowhere, np.nan, np.nan, np.nan)
+            self.nodes[key] = Node(NOTHING, nowhere, np.nan, np.nan, np.nan, self.place(key))
 
     def _record(self, keys: list[Key], X: Array) -> None:
         self._scale = None
         at = np.array([self.place(key) for key in keys]).T
-        counts, static = self.counter(X, self.plane.vectors(at))
+        X = X.copy()
+        for aside in (0.0, *_ASIDE):
+            lost = np.arange(len(keys)) if aside == 0.0 else np.flatnonzero(unstable < 0)
+            if not len(lost):
+                break
+            # Beside a boundary that runs along the lattice its nodes can be counted again.
+            moved = at[:, lost] + aside / self.side * np.where(at[:, lost] > 0.5, -1.0, 1.0)
+            found, reached = self.sheet.follow(X[:, lost], at[:, lost], moved)
+            counts, margin = self.counter(found, self.plane.vectors(moved))
+            if aside == 0.0:
+                unstable, static = counts.unstable.copy(), margin
+                margins, omega = counts.margin, counts.omega
+                continue
+            good = (reached == 1.0) & (counts.unstable >= 0)
+            at[:, lost[good]], X[:, lost[good]] = moved[:, good], found[:, good]
+            unstable[lost[good]] = counts.unstable[good]
         for k, key in enumerate(keys):
             self.nodes[key] = Node(
-                int(counts.unstable[k]),
+                int(unstable[k]),
                 X[:, k].copy(),
-                float(counts.margin[k]),
+                float(margins[k]),
                 float(static[k]),
-                float(counts.omega[k]),
+                float(omega[k]),
+                at[:, k].copy(),
             )
 
 

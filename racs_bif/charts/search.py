@@ -40,6 +40,8 @@ class Search:
         What was traced.
     unexplained : list of (Key, Key)
         Edges whose ends differ for no boundary that was found.
+    torn : int
+        Edges whose ends have different equilibria: there are several over part of the plane.
     troubles : list of str
         Boundaries that could not be traced.
     """
@@ -48,6 +50,7 @@ class Search:
     cells: list[Cell]
     boundaries: list[Boundary] = field(default_factory=list)
     unexplained: list[EdgeKey] = field(default_factory=list)
+    torn: int = 0
     troubles: list[str] = field(default_factory=list)
 
     @property
@@ -91,6 +94,7 @@ def search(
     edges: dict[EdgeKey, Edge] = {}
     while True:
         _trace_all(found, edges, settings, tell, lyapunov=lyapunov)
+        _trace_folds(found, edges, settings, tell)
         unsure = [cell for cell in found.cells if cell[2] > 1 and _hides(found, cell)]
         if not unsure:
             break
@@ -114,7 +118,7 @@ def _trace_all(
         for key in _edges(found):
             edge = edges.get(key)
             if edge is None:
-                edge = edges[key] = Edge(found.lattice, *key)
+                edge = edges[key] = Edge(found.lattice, *(found.lattice.nodes[k] for k in key))
             if key in hopeless or edge.explained(found.boundaries):
                 continue
             seed = edge.seed(found.boundaries)
@@ -137,6 +141,30 @@ def _trace_all(
     found.unexplained = [
         key for key in _edges(found) if not edges[key].explained(found.boundaries)
     ]
+
+
+def _trace_folds(
+    found: Search,
+    edges: dict[EdgeKey, Edge],
+    settings: ChartSettings,
+    tell: Callable[[str], None],
+) -> None:
+    """Trace folds behind which the equilibria of neighbouring nodes are not the same."""
+    keys = _edges(found)
+    torn = [key for key in keys if edges[key].torn]
+    found.torn = len(torn)
+    for key in torn:
+        for line in edges[key].beyond():
+            if line.explained(found.boundaries):
+                continue
+            seed = line.seed(found.boundaries)
+            if seed is None:
+                continue
+            tell(f"tracing boundary {len(found.boundaries) + 1}")
+            try:
+                found.boundaries.append(trace_boundary(found.lattice.plane, seed, settings))
+            except (ConvergenceError, np.linalg.LinAlgError) as error:
+                found.troubles.append(f"a fold boundary could not be traced: {error}")
 
 
 def _edges(found: Search) -> list[EdgeKey]:

@@ -59,8 +59,8 @@ def configure(parser: Parser) -> None:
         type=choice(*METHODS),
         default=METHODS[0],
         metavar="METHOD",
-        help="how periodic orbits are followed: shooting (default), harmonic-balance (exact operator), "
-        "or none to leave them out",
+        help="how periodic orbits are followed: shooting (default), harmonic-balance on the exact "
+        "operator, or none to leave them out",
     )
     parser.add_argument(
         "--probes",

@@ -54,7 +54,7 @@ class Problem(ABC):
 
     @abstractmethod
     def jacobian(self, z: Array) -> Array:
-        """Return the derivatives (n, n+1) of the residual."""
+        """Return the derivatives (n, n+1) of the residual; sparse only where `bordered` is too."""
 
     def bordered(self, z: Array, row: Array) -> Solver:
         """Return a solver of the matrix [jacobian; row], shape (n+1, n+1).

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from racs_bif.continuation.problem import Detector
+from racs_bif.equilibria.linearised import linearise, margin
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Point
@@ -29,13 +30,7 @@ class BranchPoint(Detector):
         One singular value changes its sign where the matrix is singular, so this test function is
         smooth there. Rows are scaled to length one, which leaves the zero where it is.
         """
-        matrix = np.vstack([problem.jacobian(point.z), point.tangent])
-        length = np.sqrt((matrix * matrix).sum(axis=1, keepdims=True))
-        if not np.all(length > 0.0):
-            return 0.0
-        matrix = matrix / length
-        sign = np.linalg.slogdet(matrix)[0]
-        return float(sign * np.linalg.svd(matrix, compute_uv=False)[-1])
+        return margin(problem.jacobian(point.z), point.tangent)
 
     def data(self, problem: EquilibriumProblem, point: Point) -> dict[str, Any]:
         """Return the kind of crossing and the direction (n+1,) of the other branch.
@@ -49,11 +44,9 @@ class BranchPoint(Detector):
         """
         z, field = point.z, problem.field
         x, p, dp = z[:-1], problem.path.vector(z[-1]), problem.path.direction(z[-1])
-        A = field.f_x(x, p)
-        left, singular, right = np.linalg.svd(A)
-        v, psi = right[-1], left[:, -1]
-        projected = left[:, :-1].T @ -field.f_p(x, p, dp)
-        w = right[:-1].T @ (projected / singular[:-1])
+        A = linearise(field, x, p)
+        v, psi = null = A.null()
+        w = A.across(-field.f_p(x, p, dp), null)
         square = field.f_xx(x, p, v, v)
         c11 = float(psi @ square)
         c12 = float(psi @ (field.f_xx(x, p, w, v) + field.f_xp(x, p, v, dp)))

@@ -1,8 +1,8 @@
 """Deflated Newton's method: equilibria that no known branch leads to.
 
-P. E. Farrell, A. Birkisson, S. W. Funke, *SIAM J. Sci. Comput.* 37 (2015) A2026-A2045: multiplying the
-equations by ``prod (1/|X - X_k|^2 + 1)`` keeps Newton's method from every solution X_k that is known, so that
-it goes on to another from the same start.
+P. E. Farrell, A. Birkisson, S. W. Funke, *SIAM J. Sci. Comput.* 37 (2015) A2026-A2045:
+multiplying the equations by ``prod (1/|X - X_k|^2 + 1)`` keeps Newton's method from every solution
+X_k that is known, so that it goes on to another from the same start.
 """
 
 from __future__ import annotations
@@ -72,11 +72,11 @@ def _deflated(
     """Return a solution other than those found, None if the iteration leads nowhere."""
     X = np.array(start, dtype=float)
     for _ in range(_ITERATIONS):
-        value, jacobian = model.residual(X, p), model.jacobian(X, p)
-        if not (np.all(np.isfinite(value)) and np.all(np.isfinite(jacobian))):
+        value = model.residual(X, p)
+        if not np.all(np.isfinite(value)):
             return None
         try:
-            step = -np.linalg.solve(jacobian, value)
+            step = -model.solver(X, p)(value)
         except np.linalg.LinAlgError:
             return None
         slope = sum(_log_slope((X - Y) / scale) for Y in found) / scale if found else 0.0 * X

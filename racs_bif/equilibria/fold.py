@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from racs_bif.continuation.problem import Detector
+from racs_bif.equilibria.linearised import linearise
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Point
@@ -32,8 +31,6 @@ class Fold(Detector):
         of q.
         """
         x, p = point.z[:-1], problem.path.vector(point.z[-1])
-        left, singular, right = np.linalg.svd(problem.field.f_x(x, p))
-        del singular
-        q, adjoint = right[-1], left[:, -1]
+        q, adjoint = linearise(problem.field, x, p).null()
         adjoint = adjoint / (adjoint @ q)
         return {"a": float(0.5 * adjoint @ problem.field.f_xx(x, p, q, q))}

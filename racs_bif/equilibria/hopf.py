@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 REAL = 1e-7
 """Below this a frequency is zero."""
+_OFF = 1e-3
 
 
 class Hopf(Detector):
@@ -37,13 +38,14 @@ class Hopf(Detector):
 
         All sums of two eigenvalues multiply to the determinant of the bialternate product
         (Kuznetsov, section 10.2.2). Sums of conjugates and of two real eigenvalues are real and
-        decide its sign.
+        decide its sign: here by those above zero, which are known even where only the rightmost
+        eigenvalues are.
         """
         del problem
         sums = real_sums(point.spectrum)[0]
         if not len(sums):
             return float("nan")
-        sign = -1.0 if np.count_nonzero(sums < 0.0) % 2 else 1.0
+        sign = -1.0 if np.count_nonzero(sums > 0.0) % 2 else 1.0
         return float(sign * np.abs(sums).min())
 
     def data(self, problem: EquilibriumProblem, point: Point) -> dict[str, Any] | None:
@@ -51,6 +53,10 @@ class Hopf(Detector):
         sums, frequencies = real_sums(point.spectrum)
         k = int(np.argmin(np.abs(sums)))
         omega = float(frequencies[k])
+        if abs(sums[k]) > _OFF * omega:
+            return (
+                None  # the sign changed where eigenvalues met, or were no longer among those found
+            )
         if omega <= REAL * (1.0 + np.abs(point.spectrum).max() * REAL):
             return None
         z, path = point.z, problem.path

@@ -17,6 +17,7 @@ from racs_bif.equilibria.curve_problem import (
     oblique,
 )
 from racs_bif.equilibria.hopf_form import Complex, Cubic, cubic
+from racs_bif.equilibria.linearised import Dense
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Array, Spectrum
@@ -179,7 +180,7 @@ class HopfCurve(CurveProblem):
         if self._cubic is None or not np.array_equal(self._cubic[0], z):
             x, p = self.base(z)
             vectors = self.eigenvectors(z)
-            found = cubic(self.field, (x, p), self._solve(z).A, self.frequency(z), vectors)
+            found = cubic(self.field, (x, p), Dense(self._solve(z).A), self.frequency(z), vectors)
             self._cubic = z.copy(), found
         return self._cubic[1]
 

@@ -14,7 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from racs_bif.equilibria.linearised import linearise
+
 if TYPE_CHECKING:
+    from racs_bif.equilibria.linearised import Linearised
     from racs_bif.symbolic.field import Array, VectorField
 
 Complex = NDArray[np.complex128]
@@ -83,15 +86,12 @@ def hopf_form(
     own : int
         Number of leading states that count in |q| = 1.
     """
-    A = field.f_x(x, p)
-    values, left, right = _eigen(A)
-    k = int(np.argmin(np.abs(values - 1j * omega)))
-    q = right[:, k]
+    A = linearise(field, x, p)
+    q, adjoint = A.eigenvectors(omega)
     q = q / np.sqrt(np.vdot(q[:own], q[:own]).real)
-    adjoint = left[:, k]
     adjoint = adjoint / np.conj(np.vdot(adjoint, q))
     third = cubic(field, (x, p), A, omega, (q, adjoint))
-    drift = -np.linalg.solve(A, field.f_p(x, p, dp))
+    drift = A.resolve(0.0, field.f_p(x, p, dp))
     moved = field.f_xx(x, p, q, drift) + field.f_xp(x, p, q, dp)
     return HopfForm(
         omega=omega,
@@ -129,7 +129,7 @@ class Cubic:
 def cubic(
     field: VectorField,
     point: tuple[Array, Array],
-    A: Array,
+    A: Linearised,
     omega: float,
     vectors: tuple[Complex, Complex],
 ) -> Cubic:
@@ -141,7 +141,7 @@ def cubic(
         The vector field.
     point : tuple of array
         The equilibrium (n,) and the base parameters (np,).
-    A : array (n, n)
+    A : Linearised
         f_x there.
     omega : float
         Frequency [rad/s].
@@ -150,8 +150,8 @@ def cubic(
     """
     x, p = point
     q, adjoint = vectors
-    static = np.linalg.solve(A, field.f_xx(x, p, q, q.conj()))
-    double = np.linalg.solve(2j * omega * np.eye(len(x)) - A, field.f_xx(x, p, q, q))
+    static = -A.resolve(0.0, field.f_xx(x, p, q, q.conj()))
+    double = A.resolve(2j * omega, field.f_xx(x, p, q, q))
     terms = np.array(
         [
             0.5 * np.vdot(adjoint, field.f_xxx(x, p, q, q, q.conj())),
@@ -165,10 +165,3 @@ def cubic(
         h20=np.asarray(double),
         h11=-np.asarray(static).real,
     )
-
-
-def _eigen(A: Array) -> tuple[Complex, Complex, Complex]:
-    from scipy.linalg import eig
-
-    values, left, right = eig(A, left=True, right=True)
-    return values, left, right

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.continuation.points import Array, Spectrum
-from racs_bif.continuation.problem import Problem
+from racs_bif.continuation.problem import Problem, Solver
+from racs_bif.equilibria.linearised import jacobian
+from racs_bif.numerics import sparse
 
 if TYPE_CHECKING:
     from racs_bif.symbolic.field import VectorField
@@ -21,6 +24,8 @@ Measures = Callable[[Array, Array], dict[str, float]]
 class EquilibriumProblem(Problem):
     """Solutions of f(x, p) = 0 along one active parameter; ``z = (x, lambda)``.
 
+    A large system whose Jacobian is sparse is treated as one; see `spectrum`.
+
     Parameters
     ----------
     field : VectorField
@@ -29,6 +34,12 @@ class EquilibriumProblem(Problem):
         The active parameter.
     measures : callable, optional
         Further quantities of a point.
+
+    Attributes
+    ----------
+    height : float
+        No unstable eigenvalue of any point so far with an imaginary part below this is missing from
+        its spectrum; infinity where none is missing at all.
     """
 
     def __init__(
@@ -38,6 +49,7 @@ class EquilibriumProblem(Problem):
         self.path = path
         self.name = "equilibria"
         self.parameter = path.names[0]
+        self.height = math.inf
         self._measures = measures
 
     def residual(self, z: Array) -> Array:
@@ -45,19 +57,39 @@ class EquilibriumProblem(Problem):
         return self.field.f(z[:-1], self.path.vector(z[-1]))
 
     def jacobian(self, z: Array) -> Array:
-        """Return (f_x, f_lambda) as (n, n+1)."""
-        n = len(z) - 1
-        p = self.path.vector(z[-1])
-        jacobian = np.empty((n, n + 1))
-        jacobian[:, :n] = self.field.f_x(z[:-1], p)
-        jacobian[:, n] = self.field.f_p(z[:-1], p, self.path.direction(z[-1]))
-        return jacobian
+        """Return (f_x, f_lambda) as (n, n+1), as a sparse array where that is faster."""
+        x, p = z[:-1], self.path.vector(z[-1])
+        A = jacobian(self.field, x, p)
+        column = self.field.f_p(x, p, self.path.direction(z[-1]))
+        if not isinstance(A, np.ndarray):
+            beside: Array = sparse.beside(A, column)
+            return beside
+        both = np.empty((len(x), len(x) + 1))
+        both[:, :-1] = A
+        both[:, -1] = column
+        return both
+
+    def bordered(self, z: Array, row: Array) -> Solver:
+        """Return a solver of the matrix [jacobian; row], shape (n+1, n+1)."""
+        return sparse.bordered(self.jacobian(z), row)
 
     def spectrum(self, z: Array) -> Spectrum:
-        """Return the eigenvalues (n,) of f_x, the rightmost first."""
+        """Return the eigenvalues of f_x, the rightmost first.
+
+        All n where the Jacobian is full. Where it is sparse, all that are unstable, as far up the
+        imaginary axis as `height` says, and others near them; `racs_bif.numerics.rightmost` says
+        what that rests on.
+        """
+        A = jacobian(self.field, z[:-1], self.path.vector(z[-1]))
+        if not isinstance(A, np.ndarray):
+            from racs_bif.numerics.rightmost import rightmost
+
+            seen = rightmost(A)
+            self.height = min(self.height, seen.height)
+            return seen.values
         from scipy.linalg import eigvals
 
-        found = eigvals(self.field.f_x(z[:-1], self.path.vector(z[-1])), check_finite=False)
+        found = eigvals(A, check_finite=False)
         return np.asarray(found[np.lexsort((found.imag, -found.real))])
 
     def sides(self, spectrum: Spectrum) -> np.ndarray:

@@ -9,13 +9,16 @@ that are exactly the characteristic roots.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
+from racs_bif.numerics import sparse
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from racs_bif.fractional.laws import Complex, Law
     from racs_bif.fractional.realised import RealisedField
     from racs_bif.symbolic.field import Array
@@ -74,6 +77,29 @@ class ExactModel:
         jacobian[self.ny :, self.ny :] -= np.diag(d)
         return jacobian
 
+    def solver(self, X: Array, p: Array) -> Callable[[Array], Array]:
+        """Return a solver of the linear equations whose matrix is `jacobian`.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            If the matrix is singular, maybe only when the solver is called.
+        """
+        if self.size >= sparse.LARGE:
+            matrix = self._sparse_jacobian(X, p)
+            if sparse.worthwhile(matrix):
+                return sparse.solver(matrix)
+        return sparse.solver(self.jacobian(X, p))
+
+    def _sparse_jacobian(self, X: Array, p: Array) -> Any:  # noqa: ANN401 - scipy has no types
+        from scipy.sparse import diags_array
+
+        core = self.compiled.core_jacobian_sparse(X, self.compiled.padded(p))
+        n, d = self._static(p)
+        own = np.ones(self.ny)
+        scaled = diags_array(np.concatenate((own, n))) @ core
+        return (scaled - diags_array(np.concatenate((0.0 * own, d)))).tocsc()
+
     def residual_p(self, X: Array, p: Array, dp: Array) -> Array:
         """Return the derivative of `residual` along `dp` (np,)."""
         padded = self.compiled.padded
@@ -106,27 +132,33 @@ class ExactModel:
         value = self.residual(X, p)
         for _ in range(iterations):
             try:
-                step = np.asarray(np.linalg.solve(self.jacobian(X, p), value), dtype=float)
+                solve = self.solver(X, p)
+                step = solve(value)
             except np.linalg.LinAlgError:
                 break
             if not np.all(np.isfinite(step)):
                 break
-            X, value, moved = self._damped(X, p, step, value)
+            X, value, moved = self._damped((X, p), step, solve)
             if moved <= _TOLERANCE * (1.0 + np.abs(X).max()):
                 return X
         msg = "no equilibrium found near the model's guess; give a better guess or another value"
         raise ConvergenceError(msg)
 
-    def _damped(self, X: Array, p: Array, step: Array, value: Array) -> tuple[Array, Array, float]:
+    def _damped(
+        self,
+        point: tuple[Array, Array],
+        step: Array,
+        solve: Callable[[Array], Array],
+    ) -> tuple[Array, Array, float]:
         """Return the next iterate, by the longest halved step that lowers the next correction."""
-        jacobian = self.jacobian(X, p)
+        X, p = point
         size = float(np.abs(step).max())
         fraction = 1.0
         while fraction > 1e-4:
             trial = X - fraction * step
             after = self.residual(trial, p)
             if np.all(np.isfinite(after)):
-                ahead = np.linalg.solve(jacobian, after)
+                ahead = solve(after)
                 if np.abs(ahead).max() <= (1.0 - 0.25 * fraction) * size or size < 1e-9:
                     return trial, after, fraction * size
             fraction *= 0.5

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from racs_bif.fractional.bank import Bank, Frame, diagonal
 from racs_bif.fractional.laws import Law, read_direction, read_numbers
 from racs_bif.symbolic.field import Array, VectorField, Vectors
 from racs_bif.symbolic.structure import Structure
@@ -19,19 +19,6 @@ if TYPE_CHECKING:
 
 _FEW = 6
 """Up to so many directions are faster one by one, on floats, than at once, on arrays."""
-
-
-@dataclass(frozen=True)
-class _Frame:
-    """What depends on parameters only: x' = left @ core(right @ x, P) + (0, A z)."""
-
-    P: Array
-    laws: tuple[Law, ...]
-    filters: tuple[Filter, ...]
-    A: Array
-    left: Array
-    right: Array
-    fixed: Array
 
 
 class RealisedField(VectorField):
@@ -52,7 +39,7 @@ class RealisedField(VectorField):
         self._ny = len(compiled.states)
         self._ne = len(compiled.elements)
         self._key: bytes | None = None
-        self._kept: _Frame | None = None
+        self._kept: Frame | None = None
         self._slopes: dict[bytes, tuple[Filter, ...] | None] = {}
         self._names: tuple[str, ...] | None = None
 
@@ -101,7 +88,7 @@ class RealisedField(VectorField):
             start = part.stop
         return tuple(directions)
 
-    def frame(self, p: Array) -> _Frame:
+    def frame(self, p: Array) -> Frame:
         """Return what depends on parameters only, kept from call to call."""
         p = np.ascontiguousarray(p, dtype=float)
         key = p.tobytes()
@@ -110,33 +97,28 @@ class RealisedField(VectorField):
             self._key = key
         return self._kept
 
-    def _make_frame(self, p: Array) -> _Frame:
+    def _make_frame(self, p: Array) -> Frame:
         laws = self.laws(p)
         kept = self._kept
         if kept is not None and all(map(_same_law, laws, kept.laws)):
-            filters, A, left, right = kept.filters, kept.A, kept.left, kept.right
+            bank = kept.bank
         else:
-            filters = tuple(self.realisation.realise(law) for law in laws)
-            A = _diagonal([f.A for f in filters])
-            eye = np.eye(self._ny)
-            left = _diagonal([eye, _diagonal([f.B[:, None] for f in filters])])
-            right = _diagonal([eye, _diagonal([f.C[None, :] for f in filters])])
-        P = np.concatenate([p, [f.D for f in filters]])
-        fixed = left @ self.compiled.fixed_jacobian(P) @ right
-        fixed[self._ny :, self._ny :] += A
-        return _Frame(P, laws, filters, A, left, right, fixed)
+            bank = Bank.of(tuple(self.realisation.realise(law) for law in laws), self._ny)
+        P = np.concatenate([p, [f.D for f in bank.filters]])
+        return Frame(P, laws, bank, self.compiled)
 
     def core_point(self, x: Array, p: Array) -> Array:
         """Return X = (y, zeta) of states x, shaped (ny + ne,) or (ny + ne, N)."""
-        return x if not self._ne else self.frame(p).right @ x
+        return x if not self._ne else self.frame(p).bank.gather(x)
 
     def f(self, x: Array, p: Array) -> Array:
         """Return the right-hand side, shaped like `x`."""
         frame = self.frame(p)
         if not self._ne:
             return self.compiled.core(x, frame.P)
-        value = frame.left @ self.compiled.core(frame.right @ x, frame.P)
-        value[self._ny :] += frame.A @ x[self._ny :]
+        bank = frame.bank
+        value = bank.spread(self.compiled.core(bank.gather(x), frame.P))
+        value[self._ny :] += frame.bank.A @ x[self._ny :]
         return value
 
     def f_x(self, x: Array, p: Array) -> Array:
@@ -145,7 +127,8 @@ class RealisedField(VectorField):
         if not self._ne:
             return self.compiled.core_jacobian(x, frame.P)
         rows, columns = self.compiled.varying_at
-        values = self.compiled.varying_jacobian(frame.right @ x, frame.P)
+        bank = frame.bank
+        values = self.compiled.varying_jacobian(bank.gather(x), frame.P)
         size = self.compiled.size
         if x.ndim == 1:
             varying = np.zeros((size, size))
@@ -153,7 +136,13 @@ class RealisedField(VectorField):
         else:
             varying = np.zeros((x.shape[1], size, size))
             varying[:, rows, columns] = values.T
-        return np.asarray(frame.fixed + frame.left @ varying @ frame.right)
+        return np.asarray(frame.fixed + bank.left @ varying @ bank.right)
+
+    def f_x_sparse(self, x: Array, p: Array) -> Any:  # noqa: ANN401 - scipy has no types
+        """Return the Jacobian (n, n) at one point as a scipy.sparse.csc_array."""
+        frame = self.frame(p)
+        core = self.compiled.core_jacobian_sparse(frame.bank.gather(x), frame.P)
+        return frame.bank.around(core) if self._ne else core
 
     def structure(self, p: Array) -> Structure:
         """Return the Jacobian's constant part and where it varies; see `Structure`."""
@@ -163,84 +152,84 @@ class RealisedField(VectorField):
         varying_columns, column = np.unique(columns, return_inverse=True)
 
         def varying(x: Array) -> Array:
-            values = compiled.varying_jacobian(frame.right @ x, frame.P)
+            values = compiled.varying_jacobian(frame.bank.gather(x), frame.P)
             out = np.zeros((x.shape[1], len(varying_rows), len(varying_columns)))
             out[:, row, column] = values.T
             return out
 
         return Structure(
             constant=frame.fixed,
-            left=frame.left[:, varying_rows],
-            right=frame.right[varying_columns],
+            left=frame.bank.left[:, varying_rows],
+            right=frame.bank.right[varying_columns],
             varying=varying,
         )
 
     def f_p(self, x: Array, p: Array, dp: Array) -> Array:
         """Return the derivative of f along `dp`, shaped like `x`."""
         frame, slopes = self.frame(p), self._filter_slopes(p, dp)
-        X, dP = frame.right @ x, self._full_direction(dp, slopes)
+        X, dP = frame.bank.gather(x), self._full_direction(dp, slopes)
         value = self.compiled.core_p(X, frame.P, dP)
         if slopes is None:
-            return np.asarray(frame.left @ value)
+            return frame.bank.spread(value)
         z = x[self._ny :]
-        memory = _diagonal([s.C[None, :] for s in slopes]) @ z
+        memory = diagonal([s.C[None, :] for s in slopes]) @ z
         jacobian = self.compiled.core_jacobian(X, frame.P)[..., self._ny :]
         through = jacobian @ memory if x.ndim == 1 else np.einsum("Nij,jN->iN", jacobian, memory)
-        result = frame.left @ (value + through)
+        result = frame.bank.spread(value + through)
         e = self.compiled.core(X, frame.P)[self._ny :]
-        result[self._ny :] += _diagonal([s.A for s in slopes]) @ z
-        result[self._ny :] += _diagonal([s.B[:, None] for s in slopes]) @ e
+        result[self._ny :] += diagonal([s.A for s in slopes]) @ z
+        result[self._ny :] += diagonal([s.B[:, None] for s in slopes]) @ e
         return np.asarray(result)
 
     def f_xx(self, x: Array, p: Array, u: Vectors, v: Vectors) -> Vectors:
         """Return the bilinear form B(u, v) at one point, shaped like the directions."""
         frame = self.frame(p)
-        R = frame.right
-        return np.asarray(frame.left @ self.compiled.core_xx(R @ x, frame.P, R @ u, R @ v))
+        R = frame.bank.gather
+        return frame.bank.spread(self.compiled.core_xx(R(x), frame.P, R(u), R(v)))
 
     def f_xx_matrices(self, x: Array, p: Array, v: Vectors) -> Vectors:
         """Return the derivatives of f_x v by x for directions v (n, k), as (k, n, n)."""
         frame = self.frame(p)
-        R, size, count = frame.right, self.compiled.size, v.shape[1]
+        R, size, count = frame.bank.right, self.compiled.size, v.shape[1]
         V, directions = np.repeat(R @ v, size, axis=1), np.tile(np.eye(size), (1, count))
         forms = self.compiled.core_xx(R @ x, frame.P, V, directions)
         core = forms.reshape(size, count, size).transpose(1, 0, 2)
-        return np.asarray(frame.left @ core @ R)
+        return np.asarray(frame.bank.left @ core @ R)
 
     def series(self, x: Coefficients, p: Array, algebra: Algebra) -> Coefficients:
         """Return the Taylor coefficients (n, len(algebra)) of f at a polynomial x of that shape."""
         frame = self.frame(p)
-        value = frame.left @ self.compiled.expand("core", algebra, frame.P, frame.right @ x)
-        value[self._ny :] += frame.A @ x[self._ny :]
+        bank = frame.bank
+        value = bank.spread(self.compiled.expand("core", algebra, frame.P, bank.gather(x)))
+        value[self._ny :] += frame.bank.A @ x[self._ny :]
         return value
 
     def f_xxx(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:
         """Return the trilinear form C(u, v, w) at one point, shaped like the directions."""
         frame = self.frame(p)
-        R = frame.right
-        value = self.compiled.core_xxx(R @ x, frame.P, R @ u, R @ v, R @ w)
-        return np.asarray(frame.left @ value)
+        R = frame.bank.gather
+        return frame.bank.spread(self.compiled.core_xxx(R(x), frame.P, R(u), R(v), R(w)))
 
     def f_xp(self, x: Array, p: Array, v: Vectors, dp: Array) -> Vectors:
         """Return the derivative of f_x v along `dp` at one point."""
         frame, slopes = self.frame(p), self._filter_slopes(p, dp)
-        R, core = frame.right, self.compiled
-        X, V, dP = R @ x, R @ v, self._full_direction(dp, slopes)
+        R, core = frame.bank.gather, self.compiled
+        X, V, dP = R(x), R(v), self._full_direction(dp, slopes)
         if v.ndim == 2 and v.shape[1] <= _FEW:
             value = np.column_stack([core.core_xp(X, frame.P, column, dP) for column in V.T])
         else:
             value = core.core_xp(X, frame.P, V, _like(dP, v))
         if slopes is None:
-            return np.asarray(frame.left @ value)
-        C_p = _diagonal([s.C[None, :] for s in slopes])
+            return frame.bank.spread(value)
+        C_p = diagonal([s.C[None, :] for s in slopes])
         jacobian = core.core_jacobian(X, frame.P)
         moved = np.zeros_like(X)
         moved[self._ny :] = C_p @ x[self._ny :]
         value = value + core.core_xx(X, frame.P, V, _like(moved, v))
         value = value + jacobian[:, self._ny :] @ (C_p @ v[self._ny :])
-        result = frame.left @ value
-        result[self._ny :] += _diagonal([s.A for s in slopes]) @ v[self._ny :]
-        result[self._ny :] += _diagonal([s.B[:, None] for s in slopes]) @ (jacobian @ V)[self._ny :]
+        result = frame.bank.spread(value)
+        result[self._ny :] += diagonal([s.A for s in slopes]) @ v[self._ny :]
+        result[self._ny :] += diagonal([s.B[:, None] for s in slopes]) @ (jacobian @ V)[self._ny :]
         return np.asarray(result)
 
     def _filter_slopes(self, p: Array, dp: Array) -> tuple[Filter, ...] | None:
@@ -301,15 +290,3 @@ def _like(direction: Array, x: Vectors) -> Array:
     if x.ndim == 1:
         return direction
     return np.broadcast_to(direction[:, None], (len(direction), x.shape[1]))
-
-
-def _diagonal(blocks: list[Array]) -> Array:
-    """Return the block-diagonal matrix of (possibly empty) blocks."""
-    rows = sum(b.shape[0] for b in blocks)
-    columns = sum(b.shape[1] for b in blocks)
-    out = np.zeros((rows, columns))
-    i = j = 0
-    for b in blocks:
-        out[i : i + b.shape[0], j : j + b.shape[1]] = b
-        i, j = i + b.shape[0], j + b.shape[1]
-    return out

@@ -117,7 +117,7 @@ class System:
         frame = self.field.frame(self.values)
         error = max(self.settings.error(law) for law in frame.laws)
         return RealisationInfo(
-            name=self.settings.name, states=len(frame.A), band=self.settings.band, error=error
+            name=self.settings.name, states=len(frame.bank.A), band=self.settings.band, error=error
         )
 
     def path(self, *names: str) -> CompiledPath:

@@ -219,5 +219,5 @@ def _damp(
 
 def _rounded(equations: Equations, z: Array, residual: Array) -> bool:
     """Whether the residual is what rounding leaves of the terms it is made of."""
-    terms = np.abs(equations.jacobian(z)) @ np.abs(z)
+    terms = abs(equations.jacobian(z)) @ np.abs(z)  # np.abs knows no sparse arrays
     return bool(np.all(np.abs(residual) <= _ROUNDING * terms))

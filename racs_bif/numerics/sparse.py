@@ -10,10 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from racs_bif.numerics.bordered import factorise
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-Numbers = NDArray[np.inexact[Any]]
+Numbers = NDArray[Any]
+"""Real or complex."""
 Matrix = Any
 """A numpy array, or a scipy.sparse array in compressed columns."""
 
@@ -25,7 +28,8 @@ as long either way at 200 unknowns, and a fifth of the time at 400.
 """
 _FULL = 0.05
 _SINGULAR = 1e-17
-_LAST = 1e-3
+LAST = 1e-3
+"""Scale at which a full last row waits until it is wanted as a pivot."""
 
 
 def worthwhile(matrix: Matrix) -> bool:
@@ -94,16 +98,17 @@ class Factors:
 
     def solve(self, right: Numbers) -> Numbers:
         """Return the solution for right-hand sides (m,) or (m, k), refined once."""
-        solution = self._solve(right)
-        return solution + self._solve(right - self._matrix @ solution)
+        solution = self.once(right)
+        return np.asarray(solution + self.once(right - self._matrix @ solution))
 
-    def _solve(self, right: Numbers) -> Numbers:
+    def once(self, right: Numbers) -> Numbers:
+        """Return the solution as it comes."""
         scale = self._scale if right.ndim == 1 else self._scale[:, None]
         return self._split(scale * right, "N")
 
     def adjoint(self, right: Numbers) -> Numbers:
         """Return the solution (m,) with the conjugate transpose of the matrix."""
-        return self._scale * self._split(right, "H")
+        return np.asarray(self._scale * self._split(right, "H"))
 
     def _split(self, right: Numbers, trans: str) -> Numbers:
         """Solve with the factors; SuperLU takes complex numbers only where the matrix has them."""
@@ -134,15 +139,20 @@ def beside(matrix: Matrix, column: Numbers) -> Matrix:
     return csc_array((data, indices, indptr), shape=(matrix.shape[0], matrix.shape[1] + 1))
 
 
-def bordered(matrix: Matrix, row: Numbers) -> Factors:
-    """Return the factors of the sparse square matrix [matrix; row], matrix (n, n + 1).
+def bordered(matrix: Matrix, row: Numbers) -> Callable[[Numbers], Numbers]:
+    """Return a solver of the square matrix [matrix; row], matrix (n, n + 1) full or sparse.
 
     Raises
     ------
     numpy.linalg.LinAlgError
         If it is singular.
     """
-    return Factors(below(matrix, row), last=_LAST)
+    if not isinstance(matrix, np.ndarray):
+        return Factors(below(matrix, row), last=LAST).solve
+    square = np.empty((len(row), len(row)), order="F")
+    square[:-1] = matrix
+    square[-1] = row
+    return factorise(square)
 
 
 def below(matrix: Matrix, row: Numbers) -> Matrix:
@@ -173,5 +183,5 @@ _SEED = 20250
 
 
 def start(size: int) -> NDArray[np.float64]:
-    """Return a vector (size,) in which nothing is missing: random, the same whenever it is asked."""
+    """Return a vector (size,) in which nothing is missing: random, and always the same."""
     return np.random.default_rng(_SEED).standard_normal(size)

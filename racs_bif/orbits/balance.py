@@ -80,16 +80,14 @@ class Balance:
         Raises
         ------
         ConvergenceError
-            If the period is not positive or the equations are not finite on the orbit.
+            If the period is not positive. What is evaluated on the orbit raises it as well, where
+            the equations are not finite.
         """
         if not period > 0.0:
             raise ConvergenceError(f"the period became {period:.6g}, which is not positive")
         p, dp = self.path.vector(active), self.path.direction(active)
         diagonals = Diagonals.of(self.model, p, dp)
-        found = Balanced(self, series, period, p, dp, diagonals)
-        if not np.isfinite(found.core.sum()):
-            raise ConvergenceError("the equations are not finite on the orbit")
-        return found
+        return Balanced(self, series, period, p, dp, diagonals)
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +167,10 @@ class Balanced:
     @cached_property
     def core(self) -> Array:
         """The core there (n, N)."""
-        return self.balance.compiled.core(self.points, self.padded)
+        values = self.balance.compiled.core(self.points, self.padded)
+        if not np.isfinite(values.sum()):
+            raise ConvergenceError("the equations are not finite on the orbit")
+        return values
 
     @cached_property
     def responses(self) -> Complex:
@@ -204,19 +205,17 @@ class Balanced:
 
         The affine rows are held in balance: the unknowns that they give move as well.
         """
+        return self._reduced(self._by_period()), self._reduced(self._by_parameter())
+
+    def _reduced(self, moved: Complex) -> Array:
+        """Return the series of what moved in the rows left."""
         elimination = self.balance.elimination
-        moves = (self._by_period(), self._by_parameter())
         if len(elimination.rows):
             left, right = self.sides
-            for moved in moves:
-                given = elimination.given_by(-moved[:, elimination.rows], self.sides, self.fixed)
-                moved += left * given
-                if self.balance.felt:
-                    moved -= right * self.linearised(given)
-                else:
-                    moved -= right * (given @ self.fixed.T)
-        by_period, by_parameter = (to_real(moved[:, elimination.left]) for moved in moves)
-        return by_period, by_parameter
+            given = elimination.given_by(-moved[:, elimination.rows], self.sides, self.fixed)
+            felt = self.linearised(given) if self.balance.felt else given @ self.fixed.T
+            moved = moved + left * given - right * felt
+        return to_real(moved[:, elimination.left])
 
     def _by_period(self) -> Complex:
         left, right = self.diagonals.slopes(self.s)

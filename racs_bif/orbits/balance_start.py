@@ -23,7 +23,8 @@ from racs_bif.orbits.fourier import (
     to_real,
     turned,
 )
-from racs_bif.orbits.harmonic_balance import HarmonicBalanceProblem, PhaseReference
+from racs_bif.orbits.harmonic_balance import HarmonicBalanceProblem
+from racs_bif.orbits.phase_reference import PhaseReference
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -108,7 +109,9 @@ def balanced_from_hopf(
     X = np.array(field.core_point(state, path.vector(active)))
     through = frame.P[len(frame.P) - (model.size - model.ny) :]
     X[model.ny :] += through * model.compiled.core(X, frame.P)[model.ny :]
-    return from_exact_hopf(model, path, solve_hopf(model, path, X, active, omega), settings=settings)
+    return from_exact_hopf(
+        model, path, solve_hopf(model, path, X, active, omega), settings=settings
+    )
 
 
 def from_exact_hopf(
@@ -268,7 +271,7 @@ def _with_outputs(model: ExactModel, p: Array, states: Complex, period: float) -
     points = sampled(spectrum, points_for(harmonics))
     inputs = analysed(model.compiled.core(points, model.compiled.padded(p)), harmonics)
     diagonals = Diagonals.of(model, p)
-    left, right = diagonals.at(2j * np.pi / period * np.arange(harmonics + 1))
+    left, right = diagonals.at(np.asarray(2j * np.pi / period * np.arange(harmonics + 1)))
     for k in range(model.ny, model.size):
         gains = left[:, k] != 0.0
         spectrum[gains, k] = right[gains, k] * inputs[gains, k] / left[gains, k]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.paths import ParameterPath
 
 _SAME: Final = 1e-9
-"""Root mean square of relative distances below which the linearised equations are taken over."""
+"""Relative distance below which the linearised equations are taken over: the root mean square of
+the states, the period and the parameter."""
 _FEWEST: Final = 4
 """Fewest products of transition matrices for the multipliers, so that small ones are not lost."""
 
@@ -131,31 +132,31 @@ class CollocationProblem(OrbitProblem):
         phase = reference.phase(at.curve.stages())
         return np.concatenate((defects.ravel(), (phase, z[-2] - np.round(z[-2]))))
 
-    def jacobian(self, z: Array) -> Array:
-        """Return the exact derivative (N m n + 2, N m n + 3) of the residual, as a dense matrix."""
+    def jacobian(self, z: Array) -> Any:  # noqa: ANN401 - scipy's arrays have no types
+        """Return the exact derivative (N m n + 2, N m n + 3) of the residual, a sparse array."""
+        from scipy.sparse import block_array, bsr_array, csr_array
+
         at, reference, g = self._at(z), self.reference(z), self._gauss
         count, degree, n = self.nodes(z).shape
         width = degree * n
         jacobians = at.tau[:, None, None, None] * self.equations.jacobians(at)
-        blocks = -np.einsum("jl,kjab->kjalb", g.values, jacobians)
-        diagonals = np.einsum("kjala->kjla", blocks)
+        blocks = -np.einsum("jl,kjab->kjlab", g.values, jacobians)
+        diagonals = np.einsum("kjlaa->kjla", blocks)
         diagonals += g.slopes[:, :, None]
-        blocks /= reference.scales[:, None, None]
-        blocks = blocks.reshape(count, width, width + n)
-        jacobian = np.zeros((count * width + 2, count * width + TAIL))
-        for k, block in enumerate(blocks):
-            own = slice(k * width, (k + 1) * width)
-            jacobian[own, own] += block[:, :width]
-            following = (k + 1) % count * width
-            jacobian[own, following : following + n] += block[:, width:]
-        columns = -self.equations.columns(at) / reference.scales
-        jacobian[:-2, -3], jacobian[:-2, -1] = columns[0].ravel(), columns[1].ravel()
+        blocks /= reference.scales[:, None]
+        # rows of n x n blocks: the nodes of an interval, and the first of the next
+        places = (np.arange(count)[:, None] * degree + np.arange(degree + 1)) % (count * degree)
+        indices = np.repeat(places, degree, axis=0).ravel()
+        starts = np.arange(count * degree + 1) * (degree + 1)
+        ring = bsr_array((blocks.reshape(-1, n, n), indices, starts), shape=(count * width,) * 2)
+        columns = -(self.equations.columns(at) / reference.scales).reshape(2, -1)
+        columns = np.stack((columns[0], np.zeros_like(columns[0]), columns[1]), axis=1)
         rows = g.values.T @ reference.weights
-        folded = rows[:, :degree].copy()
-        folded[:, 0] += np.roll(rows[:, degree], 1, axis=0)
-        jacobian[-2, :-TAIL] = folded.ravel()
-        jacobian[-1, -2] = 1.0
-        return jacobian
+        phase = rows[:, :degree].copy()
+        phase[:, 0] += np.roll(rows[:, degree], 1, axis=0)
+        border = csr_array(np.stack((phase.ravel(), np.zeros(count * width))))
+        corner = csr_array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        return block_array([[ring, csr_array(columns)], [border, corner]], format="csc")
 
     def bordered(self, z: Array, row: Array) -> Solver:
         """Return a solver of [jacobian; row] by condensation; see `BorderedIntervals`."""
@@ -210,8 +211,8 @@ class CollocationProblem(OrbitProblem):
             known, linearised = self._base
             if len(known) == len(z) and self.reference(known).mesh is self.reference(z).mesh:
                 distance = (z - known) / self.magnitudes(z)
-                distance[-2] = 0.0
-                if float(distance @ distance) < _SAME**2 * len(z):
+                states = float(np.linalg.norm(distance[:-TAIL])) / len(z) ** 0.5
+                if max(states, abs(float(distance[-3])), abs(float(distance[-1]))) < _SAME:
                     return linearised
         linearised = self.equations.linearised(self._at(z), self.reference(z).scales)
         self._base = (np.array(z), linearised)
@@ -237,11 +238,9 @@ class CollocationProblem(OrbitProblem):
 
         Half of the difference between the halves, so that both kinds are amplitudes.
         """
-        mesh = curve.mesh
         if self.turns == 1:
-            mean = np.sum(mesh.widths[:, None, None] * curve.nodes, axis=(0, 1)) / self._degree
-            return np.asarray(curve.nodes - mean)
-        times = equidistant(mesh, self._degree)
+            return np.asarray(curve.nodes - curve.mean())
+        times = equidistant(curve.mesh, self._degree)
         return np.asarray(0.5 * (curve.nodes - curve((times + 1.0 / self.turns) % 1.0)))
 
     def floquet(self, z: Array) -> Floquet:
@@ -292,7 +291,9 @@ class CollocationProblem(OrbitProblem):
         return followed, self._in_phase(followed, tangent)
 
     def _scales_of(self, z: Array) -> Array:
-        return np.maximum(self.reference(z).scales, self.curve(z).ranges())
+        """Return how far the states have moved: on one orbit, or from the first to this."""
+        moved = np.abs(self.curve(z).mean() - self.history.curve(0).mean())
+        return np.maximum(np.maximum(self.reference(z).scales, self.curve(z).ranges()), moved)
 
     def _in_phase(self, z: Array, tangent: Array) -> Array:
         """Return a tangent shifted along the orbit until it obeys the phase condition of `z`."""

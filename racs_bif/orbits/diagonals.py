@@ -65,7 +65,10 @@ class Diagonals:
         left, right = self._empty(s)
         moving, still = s != 0.0, s == 0.0
         for k, (law, moved) in enumerate(zip(self.laws, self.directions, strict=True), self.states):
-            pairs = ((left, law.denominator, moved.denominator), (right, law.numerator, moved.numerator))
+            pairs = (
+                (left, law.denominator, moved.denominator),
+                (right, law.numerator, moved.numerator),
+            )
             for side, terms, direction in pairs:
                 side[moving, k] = terms.along(direction, s[moving])
                 side[still, k] = direction.coefficients[terms.exponents == 0.0].sum()

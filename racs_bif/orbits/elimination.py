@@ -68,7 +68,9 @@ class Elimination:
         if len(self.rows):
             matrix = -right[:, self.rows, None] * fixed[self.rows]
             matrix[:, np.arange(len(self.rows)), self.rows] += left[:, self.rows]
-            result[:, self.given] = np.linalg.solve(matrix[:, :, self.given], rhs[..., None])[..., 0]
+            result[:, self.given] = np.linalg.solve(matrix[:, :, self.given], rhs[..., None])[
+                ..., 0
+            ]
         return result
 
 

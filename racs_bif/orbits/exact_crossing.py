@@ -1,4 +1,4 @@
-"""Where a multiplier of the exact operator crosses the unit circle: NS and PD without realisation."""
+"""Where a multiplier of the exact operator crosses the unit circle: NS and PD themselves."""
 
 from __future__ import annotations
 

@@ -74,10 +74,12 @@ def expand(model: ExactModel, path: ParameterPath, hopf: ExactHopf) -> ExactExpa
     delta = np.array([np.diag(a) for a in left]) - right[:, :, None] * jacobian
 
     def form(u: Complex, v: Complex) -> Complex:
-        return compiled.core_xx(X, P, u, v)
+        return np.asarray(compiled.core_xx(X, P, u, v), dtype=complex)
 
     try:
-        steady = lefts[0] * X - rights[0] * compiled.core(X, P) - right[0] * compiled.core_p(X, P, dP)
+        steady = (
+            lefts[0] * X - rights[0] * compiled.core(X, P) - right[0] * compiled.core_p(X, P, dP)
+        )
         drift = -np.linalg.solve(delta[0], steady)
         mean = np.linalg.solve(delta[0], right[0] * form(q, q.conj()))
         second = np.linalg.solve(delta[2], right[2] * 0.5 * form(q, q))

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.errors import ConvergenceError, UsageError
-from racs_bif.orbits.balance import Balance, Balanced
 from racs_bif.orbits.balance_settings import BalanceSettings
-from racs_bif.orbits.floquet import Floquet
 from racs_bif.orbits.fourier import (
     amplitudes,
     evaluated,
@@ -23,14 +19,18 @@ from racs_bif.orbits.fourier import (
     tails,
     turned,
 )
+from racs_bif.orbits.phase_reference import PhaseReference
 from racs_bif.orbits.problem import OrbitProblem
-from racs_bif.orbits.realised_orbit import RealisedOrbit
+from racs_bif.orbits.realised_orbit import multipliers_along, realised_states
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from racs_bif.continuation.points import Point
     from racs_bif.fractional.exact import ExactModel
+    from racs_bif.fractional.realised import RealisedField
+    from racs_bif.orbits.balance import Balance, Balanced
+    from racs_bif.orbits.floquet import Floquet
     from racs_bif.symbolic.field import Array
     from racs_bif.symbolic.paths import ParameterPath
 
@@ -44,46 +44,6 @@ _POLISHING: Final = 6
 _GROWTH: Final = 1.3
 _SPARE: Final = 1e-2
 """Harmonics are given back where even two thirds of them leave a tail this far below the bound."""
-
-
-@dataclass(frozen=True, eq=False)
-class PhaseReference:
-    """An orbit that fixes the phase of its neighbours: integral <x - r, r'> ds = 0.
-
-    Attributes
-    ----------
-    series : array (2H + 1, m)
-        The orbit.
-    velocities : array (2H + 1, m)
-        Its derivative by the angle.
-    scales : array (m,)
-        Typical amplitudes of the unknowns, positive.
-    degenerate : bool
-        Whether the orbit is an equilibrium, from which a branch starts.
-    """
-
-    series: Array
-    velocities: Array
-    scales: Array
-    degenerate: bool = False
-
-    @cached_property
-    def weights(self) -> Array:
-        """Weights (2H + 1, m), normalised: a shift by an angle gives the angle."""
-        weights = self.velocities / self.scales**2
-        return np.asarray(weights / np.sum(weights * self.velocities))
-
-    def phase(self, series: Array) -> float:
-        """Return the angle by which a series is ahead, to first order."""
-        return float(np.sum(self.weights * (series - self.series)))
-
-    def correlation(self, series: Array) -> float:
-        """Return the cosine between two orbits' departures from their means."""
-        if self.degenerate:
-            return 1.0
-        here, there = series[1:] / self.scales, self.series[1:] / self.scales
-        lengths = float(np.linalg.norm(here) * np.linalg.norm(there))
-        return float(np.sum(here * there)) / lengths if lengths else 0.0
 
 
 class HarmonicBalanceProblem(OrbitProblem):
@@ -111,6 +71,8 @@ class HarmonicBalanceProblem(OrbitProblem):
         Harmonics, multipliers, ends.
     """
 
+    field: RealisedField
+
     def __init__(
         self,
         model: ExactModel,
@@ -126,10 +88,10 @@ class HarmonicBalanceProblem(OrbitProblem):
         self.path = path
         self.balance = balance
         self.settings = settings or BalanceSettings()
-        self._references = [reference]
+        self._references: list[PhaseReference] = [reference]
         self._width = len(balance.kept)
         self._solution: tuple[bytes, Balanced] | None = None
-        self._realised: tuple[bytes, RealisedOrbit] | None = None
+        self._floquet: tuple[bytes, Floquet] | None = None
         self._first_period: float | None = None
 
     # ------------------------------------------------------------------ the unknowns
@@ -162,7 +124,7 @@ class HarmonicBalanceProblem(OrbitProblem):
         UsageError
             If it belongs to none of this problem's.
         """
-        number = round(z[-2])
+        number = round(float(z[-2]))
         if 0 <= number < len(self._references):
             reference = self._references[number]
             if reference.series.size == len(z) - TAIL:
@@ -184,9 +146,12 @@ class HarmonicBalanceProblem(OrbitProblem):
         """
         key = z.tobytes()
         if self._solution is None or self._solution[0] != key:
-            found = self.balance.at(self.series(z).copy(), self.period(z), float(z[-1]))
-            self._solution = (key, found)
+            self._solution = (key, self._exactly(z))
         return self._solution[1]
+
+    def _exactly(self, z: Array) -> Balanced:
+        """Return the balance at `z` without keeping it: of little work that is worth it."""
+        return self.balance.at(self.series(z).copy(), self.period(z), float(z[-1]))
 
     def _near(self, z: Array) -> Balanced:
         """Return the balance at `z`, or where it is known within rounding of it."""
@@ -227,17 +192,13 @@ class HarmonicBalanceProblem(OrbitProblem):
             return True
         return reference.correlation(series) < 0.0
 
-    def realised(self, z: Array) -> RealisedOrbit:
-        """Return the realisation on the exact orbit."""
-        key = z.tobytes()
-        if self._realised is None or self._realised[0] != key:
-            found = RealisedOrbit.along(self._near(z), self.field, self.settings)
-            self._realised = (key, found)
-        return self._realised[1]
-
     def floquet(self, z: Array) -> Floquet:
         """Return the multipliers of the realisation along the exact orbit."""
-        return self.realised(z).floquet
+        key = z.tobytes()
+        if self._floquet is None or self._floquet[0] != key:
+            found = multipliers_along(self._near(z), self.field, self.settings)
+            self._floquet = (key, found)
+        return self._floquet[1]
 
     def stable(self, spectrum: NDArray[np.complex128]) -> bool | None:
         """Return whether an orbit is stable; None where the realisation does not tell.
@@ -384,14 +345,14 @@ class HarmonicBalanceProblem(OrbitProblem):
 
     def extrema(self, z: Array) -> tuple[Array, Array]:
         """Return the highest and the lowest values (n,) of the states."""
-        return extrema(self.realised(z).spectrum)
+        return extrema(realised_states(self._exactly(z), self.field))
 
     def sample(self, z: Array, fractions: Array) -> Array:
         """Return the states (n, m) at fractions (m,) of the period.
 
         Those of the realisation's memory are its steady response to the exact orbit.
         """
-        return evaluated(self.realised(z).spectrum, fractions)
+        return evaluated(realised_states(self._exactly(z), self.field), fractions)
 
     def remarks(self, z: Array) -> dict[str, float | str]:
         """Return how the orbit was resolved and where its multipliers come from."""
@@ -404,7 +365,7 @@ class HarmonicBalanceProblem(OrbitProblem):
     def measures(self, z: Array) -> dict[str, float]:
         """Return period, extremes of the model's states, tail, harmonics, and trivial error."""
         own = self.model.ny
-        highest, lowest = extrema(self._near(z).spectrum[:, :own])
+        highest, lowest = extrema(self._exactly(z).spectrum[:, :own])
         measures = {"period": self.period(z)}
         for j, state in enumerate(self.balance.compiled.states):
             measures[f"max {state}"] = float(highest[j])

@@ -51,11 +51,7 @@ class Linearised:
     @cached_property
     def ends(self) -> Array:
         """Derivatives (2, N, n) of the ends of the intervals by u."""
-        return self.at_ends(self.stages.solve(self.columns))
-
-    def at_ends(self, stages: Array) -> Array:
-        """Return what values at the Gauss points (c, N, m, n) add at the ends (c, N, n)."""
-        return np.asarray(self.gauss.end @ stages)
+        return self.stages.at_ends(self.columns)
 
     def from_starts(self, starts: Array) -> Array:
         """Return right-hand sides (c, N, m, n) of starts (c, N, n)."""
@@ -112,7 +108,7 @@ class BorderedIntervals:
         moved = np.zeros((*stages.shape[:2], stages.shape[-1]))
         active = stages.any(axis=(1, 2, 3))
         if active.any():
-            moved[active] = equations.at_ends(equations.stages.solve(stages[active]))
+            moved[active] = equations.stages.at_ends(stages[active])
         border = border - _products(self._adjoint, stages)
         points, unknowns = self._ring.solve(np.moveaxis(moved, 0, -1), border)
         starts = np.ascontiguousarray(np.moveaxis(points, -1, 0))

@@ -178,6 +178,10 @@ class LowRankStages(Stages):
         varying = (tau[:, None, None] * added) @ (self._forward.correction @ seen)
         return np.asarray(constant + varying)
 
+    def at_ends(self, rhs: Array) -> Array:
+        """Return what B^-1 rhs adds at the ends of the intervals (c, N, n)."""
+        return np.asarray(self._gauss.end @ self.solve(rhs))
+
     def solve(self, rhs: Array) -> Array:
         """Return B^-1 rhs."""
         return self._apply(rhs, self._forward)

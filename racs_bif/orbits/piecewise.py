@@ -60,6 +60,11 @@ class Piecewise:
         """Return the derivatives there by time in units of the period (N, m, n)."""
         return np.asarray((self.gauss.slopes @ self.closed) / self.mesh.widths[:, None, None])
 
+    def mean(self) -> Array:
+        """Return the mean over a period, (n,)."""
+        g, widths = self.gauss, self.mesh.widths
+        return np.asarray(widths @ (g.weights @ self.stages()))
+
     def ranges(self) -> Array:
         """Return highest minus lowest value at the nodes, (n,)."""
         return np.asarray(np.ptp(self.nodes.reshape(-1, self.nodes.shape[-1]), axis=0))
@@ -76,32 +81,33 @@ class Piecewise:
 
     def extrema(self) -> tuple[Array, Array]:
         """Return the highest and the lowest values (n,), the leading error taken off."""
-        degree, n = self.gauss.degree, self.nodes.shape[-1]
         powers = np.concatenate((self.powers, np.zeros_like(self.powers[:, :1])), axis=1)
         powers += self._missing[:, None] * self.gauss.error[:, None]
-        count = 2 * degree
+        count, size = 2 * self.gauss.degree, powers.shape[1]
         fractions = np.linspace(0.0, 1.0, count + 1)
-        samples = np.vander(fractions, degree + 2, increasing=True) @ powers
-        flat = samples.reshape(-1, n)
-        places = np.stack((flat.argmax(axis=0), flat.argmin(axis=0)))
+        samples = (np.vander(fractions, size, increasing=True) @ powers).reshape(
+            -1, powers.shape[2]
+        )
+        places = np.stack((samples.argmax(axis=0), samples.argmin(axis=0)))
         interval, local = np.divmod(places, count + 1)
-        state = np.arange(n)
-        sign = np.array([[1.0], [-1.0]])
-        # an extremum at the very start of an interval may lie in the one before
-        before = (local == 0) & (sign * powers[interval, 1, state] < 0.0)
-        interval = np.where(before, (interval - 1) % self.mesh.steps, interval)
-        s = fractions[np.where(before, count, local)]
+        state, sign = np.arange(powers.shape[2]), np.array([[1.0], [-1.0]])
+        exponents = np.arange(1, size)[:, None, None]
+        # an extremum next to a mesh point may lie on the other side of it: the slope tells
+        slopes = np.moveaxis(powers[interval, 1:, state], -1, 0) * exponents
+        back = (local == 0) & (sign * slopes[0] < 0.0)
+        ahead = (local == count) & (sign * slopes.sum(axis=0) > 0.0)
+        interval = (interval + ahead - back) % self.mesh.steps
+        s = fractions[np.where(back, count, np.where(ahead, 0, local))]
         own = np.moveaxis(powers[interval, :, state], -1, 0)
-        low, high = np.maximum(s - 1.0 / count, 0.0), np.minimum(s + 1.0 / count, 1.0)
-        exponents = np.arange(1, degree + 2)[:, None, None]
         first = own[1:] * exponents
         second = first[1:] * exponents[:-1]
+        low, high = np.maximum(s - 1.0 / count, 0.0), np.minimum(s + 1.0 / count, 1.0)
         for _ in range(_NEWTON):
-            slope, bend = _horner(first, s), _horner(second, s)
+            bend = _horner(second, s)
             curved = sign * bend < 0.0
-            s = np.where(curved, s - slope / np.where(curved, bend, 1.0), s)
-            s = np.clip(s, low, high)
-        found = sign * np.maximum(sign * _horner(own, s), sign * flat[places, state])
+            step = np.where(curved, _horner(first, s) / np.where(curved, bend, 1.0), 0.0)
+            s = np.clip(s - step, low, high)
+        found = sign * np.maximum(sign * _horner(own, s), sign * samples[places, state])
         return found[0], found[1]
 
     @cached_property

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from racs_bif.orbits.dense import ORDER
-from racs_bif.orbits.floquet import Floquet, floquet
+from racs_bif.orbits.floquet import floquet
 from racs_bif.orbits.fourier import evaluated, sampled
 from racs_bif.orbits.mesh import Mesh, equidistributed, rounded
 from racs_bif.orbits.monodromy import transitions
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from racs_bif.fractional.realised import RealisedField
     from racs_bif.orbits.balance import Balanced
     from racs_bif.orbits.balance_settings import BalanceSettings
+    from racs_bif.orbits.floquet import Floquet
     from racs_bif.orbits.fourier import Complex
     from racs_bif.symbolic.field import Array
 
@@ -26,38 +26,32 @@ _CONSTANT: Final = 1.0 / 885.0
 """Largest value of the error function of the dense output of the Radau method."""
 
 
-@dataclass(frozen=True, eq=False)
-class RealisedOrbit:
-    """What the realisation does while the model's states follow an exact orbit.
+def multipliers_along(exact: Balanced, field: RealisedField, settings: BalanceSettings) -> Floquet:
+    """Return the multipliers of the realisation's variational equation along an exact orbit.
 
-    Attributes
+    Parameters
     ----------
-    spectrum : complex array (H + 1, n)
-        All states of the realised field: the model's own, and the steady response of the memory.
-    floquet : Floquet
-        Multipliers of the variational equation along it.
+    exact : Balanced
+        The orbit.
+    field : RealisedField
+        The realisation.
+    settings : BalanceSettings
+        How finely the equation is integrated.
     """
-
-    spectrum: Complex
-    floquet: Floquet
-
-    @classmethod
-    def along(
-        cls, exact: Balanced, field: RealisedField, settings: BalanceSettings
-    ) -> RealisedOrbit:
-        """Follow an exact orbit."""
-        spectrum = _states(exact, field)
-        k = np.arange(len(spectrum))[:, None]
-        scales = _scales(spectrum)
-        mesh = _mesh(spectrum[:, : exact.balance.model.ny], settings)
-        stages = evaluated(spectrum, mesh.times(ABSCISSAE).ravel())
-        matrices = transitions(field.f_x(stages, exact.p), mesh, exact.period)
-        velocities = evaluated(1j * k * spectrum, mesh.starts).T
-        return cls(spectrum, floquet(matrices, velocities, scales))
+    spectrum = realised_states(exact, field)
+    k = np.arange(len(spectrum))[:, None]
+    mesh = _mesh(spectrum[:, : exact.balance.model.ny], settings)
+    stages = evaluated(spectrum, mesh.times(ABSCISSAE).ravel())
+    matrices = transitions(field.f_x(stages, exact.p), mesh, exact.period)
+    velocities = evaluated(1j * k * spectrum, mesh.starts).T
+    return floquet(matrices, velocities, _scales(spectrum))
 
 
-def _states(exact: Balanced, field: RealisedField) -> Complex:
-    """Return the spectrum of all states (H + 1, n), the memory driven by the exact inputs."""
+def realised_states(exact: Balanced, field: RealisedField) -> Complex:
+    """Return the spectrum of all states of the realised field (H + 1, n).
+
+    The model's own are those of the exact orbit; the memory is in steady response to it.
+    """
     frame = field.frame(exact.p)
     own = exact.balance.model.ny
     parts = [exact.spectrum[:, :own]]

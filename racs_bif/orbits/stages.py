@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,10 @@ class Stages(ABC):
     @abstractmethod
     def transitions(self) -> Array:
         """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
+
+    @abstractmethod
+    def at_ends(self, rhs: Array) -> Array:
+        """Return what B^-1 rhs adds at the ends of the intervals (c, N, n)."""
 
     @abstractmethod
     def solve(self, rhs: Array) -> Array:
@@ -76,11 +81,21 @@ class DenseStages(Stages):
 
     def transitions(self) -> Array:
         """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
-        g, eye = self._gauss, np.eye(self._size)
-        ends = np.multiply.outer(g.end, eye).reshape(-1, self._size)
-        blocks = self._transposed(ends).reshape(-1, g.degree, self._size, self._size)
-        sums = np.einsum("j,kjab->kba", g.row_sums, blocks)
-        return np.asarray(sums + g.end_start * eye)
+        g, size = self._gauss, self._size
+        blocks = self._ends.reshape(len(self._ends), g.degree, -1)
+        sums = (g.row_sums @ blocks).reshape(-1, size, size)
+        return np.asarray(np.swapaxes(sums, 1, 2) + g.end_start * np.eye(size))
+
+    @cached_property
+    def _ends(self) -> Array:
+        """B^-T times what makes the end of an interval of its Gauss points (N, m n, n)."""
+        weights = np.multiply.outer(self._gauss.end, np.eye(self._size))
+        return self._transposed(weights.reshape(-1, self._size))
+
+    def at_ends(self, rhs: Array) -> Array:
+        """Return what B^-1 rhs adds at the ends of the intervals (c, N, n)."""
+        rows = rhs.reshape(*rhs.shape[:2], 1, -1)
+        return np.asarray((rows @ self._ends)[:, :, 0])
 
     @abstractmethod
     def _factorise(self, matrices: Array) -> None:

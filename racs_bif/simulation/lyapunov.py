@@ -12,6 +12,7 @@ filters; the slowest may lie just below zero.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array, VectorField
 
 _BATCHES: Final = 16
+_STUCK: Final = 1e-14  # a step smaller than this, over the interval, leads nowhere
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class LyapunovExponents:
         return float(k + sums[k - 1] / abs(self.exponents[k]))
 
 
-def lyapunov_exponents(  # noqa: PLR0913 - each is one choice of the user's
+def lyapunov_exponents(
     field: VectorField,
     x: Array,
     p: Array,
@@ -114,7 +116,7 @@ def lyapunov_exponents(  # noqa: PLR0913 - each is one choice of the user's
     growth = np.empty((rows, count))
     for k in range(rows):
         x, Q, growth[k] = joint.advance(x, Q, interval)
-    times = interval * np.arange(1, rows + 1)
+    times = interval * np.arange(1, rows + 1, dtype=float)
     batches = [part.mean(axis=0) for part in np.array_split(growth / interval, _BATCHES)]
     return LyapunovExponents(
         exponents=growth.sum(axis=0) / times[-1],
@@ -136,25 +138,33 @@ class _Joint:
 
     def advance(self, x: Array, Q: Array, interval: float) -> tuple[Array, Array, Array]:
         """Return state and directions after an interval, and the logarithms of their growth."""
-        from scipy.integrate import solve_ivp
+        from scipy.integrate import LSODA
 
-        with np.errstate(all="ignore"):
-            done = solve_ivp(
+        z = np.concatenate([x, Q.T.ravel()])
+        alive = bool(np.all(np.isfinite(self._rate(0.0, z))))
+        if alive:
+            solver = LSODA(
                 self._rate,
-                (0.0, interval),
-                np.concatenate([x, Q.T.ravel()]),
-                method="LSODA",
+                0.0,
+                z,
+                interval,
                 rtol=self.tolerance,
                 atol=1e-3 * self.tolerance,
                 jac=self._jacobian,
-                t_eval=[interval],
             )
-        if not done.success or not np.all(np.isfinite(done.y)):
+            while alive and solver.status == "running":
+                with np.errstate(all="ignore"), warnings.catch_warnings():
+                    warnings.simplefilter("ignore")  # a failure is told below
+                    solver.step()
+                alive = solver.status != "failed" and solver.t > solver.t_old + _STUCK * interval
+                z = solver.y
+        if not alive or not np.all(np.isfinite(z)):
             msg = "the trajectory cannot be continued; start elsewhere, or shorten the duration"
             raise ConvergenceError(msg)
-        end = done.y[:, -1]
+        end = np.asarray(z, dtype=float)
         Q, R = np.linalg.qr(end[self.n :].reshape(self.count, self.n).T)
-        return end[: self.n], Q, np.log(np.abs(np.diag(R)))
+        growth = np.log(np.abs(np.diag(R)))
+        return end[: self.n], np.asarray(Q, dtype=float), growth
 
     def _rate(self, _t: float, z: Array) -> Array:
         x, V = z[: self.n], z[self.n :].reshape(self.count, self.n)
@@ -164,7 +174,7 @@ class _Joint:
         n, x = self.n, z[: self.n]
         V = z[n:].reshape(self.count, n).T
         single = self.field.f_x(x, self.p)
-        whole = np.kron(np.eye(self.count + 1), single)
+        whole: Array = np.kron(np.eye(self.count + 1), single).astype(np.float64)
         forms = np.asarray(self.field.f_xx_matrices(x, self.p, V)).real
         whole[n:, :n] = forms.reshape(self.count * n, n)
         return whole

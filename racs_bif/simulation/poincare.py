@@ -68,4 +68,4 @@ def poincare_section(
 
     found = crossings(times, watched, level, direction)
     points = np.asarray(CubicSpline(times, states, axis=0)(found))
-    return Section(found, points.reshape(len(found), -1))
+    return Section(found, points.reshape(len(found), states.shape[1]))

@@ -14,9 +14,11 @@ from racs_bif.symbolic import cache
 from racs_bif.symbolic.generate import Sources, generate
 from racs_bif.symbolic.jets import Algebra, Coefficients, JetFunctions
 from racs_bif.symbolic.kernels import Functions, Kernel, build
+from racs_bif.symbolic.metadata import facts
 from racs_bif.symbolic.model import Calibration, Model, Parameter
 
 if TYPE_CHECKING:
+    import sympy as sp
     from numpy.typing import ArrayLike
 
     from racs_bif.symbolic.field import Array, Vectors
@@ -68,6 +70,7 @@ class CompiledModel:
         self.size = size
         self._fixed_at = _places(meta["fixed"])
         self.varying_at = _places(meta["varying"])
+        self._columns: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
         self._base_key: bytes | None = None
         self._base_jacobian = np.zeros((size, size))
 
@@ -110,6 +113,20 @@ class CompiledModel:
         many = np.broadcast_to(base, (x.shape[1], *base.shape)).copy()
         many[:, rows, columns] = values.T
         return many
+
+    def core_jacobian_sparse(self, x: Array, p: Array) -> Any:  # noqa: ANN401 - scipy has no types
+        """Return `core_jacobian` at one point as a scipy.sparse.csc_array."""
+        from scipy.sparse import csc_array
+
+        if self._columns is None:
+            places = zip(self._fixed_at, self.varying_at, strict=True)
+            rows, columns = (np.concatenate(pair) for pair in places)
+            order = np.lexsort((rows, columns))
+            starts = np.searchsorted(columns[order], np.arange(self.size + 1))
+            self._columns = order, rows[order], starts
+        order, rows, starts = self._columns
+        values = np.concatenate((self.kernel("jacobian_fixed")(p), self.varying_jacobian(x, p)))
+        return csc_array((values[order], rows.copy(), starts.copy()), shape=(self.size, self.size))
 
     def fixed_jacobian(self, p: Array) -> Array:
         """Return the entries of the core's Jacobian that do not depend on the state."""
@@ -207,20 +224,26 @@ def compile_model(model: Model) -> CompiledModel:
 
 def _sources(model: Model) -> Sources:
     """Return the compiled texts of a model, from the cache if they are there."""
-    import sympy as sp
-
     expressions = [*model.equations.values(), *model.outputs.values()]
     expressions += [part for e in model.elements for part in (e.input, e.law)]
     expressions += [d.expression for d in model.derived]
     expressions += list(model.mass) if model.mass is not None else []
-    from racs_bif.symbolic.metadata import describe
-
-    key = cache.key("model", repr(describe(model)), *map(sp.srepr, expressions))
+    told = repr((facts(model), list(model.outputs)))
+    key = cache.key("model", told, *map(_spelled, expressions))
     sources = read_sources(key)
     if sources is None:
         sources = generate(model)
         write_sources(key, sources)
     return sources
+
+
+def _spelled(expression: sp.Basic) -> str:
+    """Return a text that says exactly what an expression is; quicker than sympy's own."""
+    import sympy as sp
+
+    if not expression.args:
+        return str(sp.srepr(expression))
+    return f"{type(expression).__name__}({','.join(map(_spelled, expression.args))})"
 
 
 def read_sources(key: str) -> Sources | None:

@@ -58,6 +58,13 @@ class VectorField(ABC):
         forms = self.f_xx(x, p, np.repeat(v, n, axis=1), directions)
         return np.asarray(forms.reshape(n, count, n).transpose(1, 0, 2))
 
+    def f_x_sparse(self, x: Array, p: Array) -> Any:  # noqa: ANN401 - scipy has no types
+        """Return the Jacobian (n, n) at one point as a scipy.sparse.csc_array, None where unknown.
+
+        Solvers of large systems use it where it makes them faster; they need nothing but `f_x`.
+        """
+        del x, p
+
     def structure(self, p: Array) -> Structure | None:
         """Return which entries of the Jacobian vary with the state; None where that is not known.
 

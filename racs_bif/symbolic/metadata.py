@@ -12,6 +12,15 @@ def describe(model: Model) -> dict[str, Any]:
     mass = None
     if model.mass is not None:
         mass = [[str(e) for e in model.mass.row(i)] for i in range(model.mass.rows)]
+    return facts(model) | {
+        "outputs": {name: str(e) for name, e in model.outputs.items()},
+        "equations": {name: str(e) for name, e in model.equations.items()},
+        "mass": mass,
+    }
+
+
+def facts(model: Model) -> dict[str, Any]:
+    """Return `describe` without what grows with the model and takes seconds: printed equations."""
     return {
         "name": model.name,
         "title": model.title,
@@ -43,9 +52,6 @@ def describe(model: Model) -> dict[str, Any]:
         "input_states": [
             str(e.input) if str(e.input) in model.states else "" for e in model.elements
         ],
-        "outputs": {name: str(e) for name, e in model.outputs.items()},
-        "equations": {name: str(e) for name, e in model.equations.items()},
-        "mass": mass,
     }
 
 

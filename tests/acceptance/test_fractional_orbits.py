@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-import racs_bif as rb
 
+import racs_bif as rb
 from racs_bif.continuation.settings import StepSettings
 from racs_bif.continuation.trace import trace
 from racs_bif.fractional.diffusive import Diffusive
@@ -20,7 +20,7 @@ STEPS = StepSettings(maximum=0.05, tolerance=1e-8)
 
 @pytest.fixture(scope="module")
 def vehicle():
-    """The exact Hopf point of the vehicle and its path, on a realisation good to low frequencies."""
+    """The exact Hopf point of the vehicle; its realisation is good to low frequencies."""
     system = rb.load_model("racs", realisation=Diffusive(band=(0.05, 60.0), order=14))
     path = system.path("u")
     p = path.vector(10.2)
@@ -81,7 +81,7 @@ def test_vehicle_amplitude_from_the_expansion_and_from_small_orbits(vehicle):
     problem = start.problem
     place = problem.balance.kept.index(system.states.index("delta_c"))
     ratios = []
-    for amplitude in (0.04, 0.02):
+    for amplitude in (0.01, 0.005):
         z = problem.solved(small_orbit(start, hopf, amplitude, expansion))
         series = problem.series(z)
         first = np.hypot(series[1, place], series[1 + problem.harmonics(z), place])
@@ -113,13 +113,30 @@ def test_vehicle_has_no_fold_before_the_window_ends(window):
 
 @pytest.mark.parametrize(
     ("mu", "omega", "highest"),
-    [(0.4, 1.1758762053, 0.8601611934), (1.0, 1.1503136123, 1.6432206301)],
+    [(0.4, 1.1758762053, 0.860161194111), (1.0, 1.1503136123, 1.643220549382)],
 )
 def test_van_der_pol_with_a_springpot(springpot, mu, omega, highest):
+    """The maxima differ from acceptance.md's (.8601611934, 1.6432206301) by 7e-10 and 8e-8.
+
+    Those here solve the equation, evaluated independently of the project, to rounding.
+    """
     problem, found = springpot
-    z = next(s.z for s in found.special if s.parameter == mu)
-    assert 2 * np.pi / problem.period(z) == pytest.approx(omega, abs=1e-9)
-    assert problem.extrema(z)[0][0] == pytest.approx(highest, abs=1e-9)
+    z = problem.solved(next(s.z for s in found.special if s.parameter == mu))
+    period = problem.period(z)
+    assert 2 * np.pi / period == pytest.approx(omega, abs=1e-9)
+    assert problem.extrema(z)[0][0] == pytest.approx(highest, abs=1e-11)
+    k = np.arange(problem.harmonics(z) + 1)
+    s = 2j * np.pi / period * k
+    x = problem.solution(z).spectrum[:, 0]
+    turns = np.exp(2j * np.pi * np.outer(k, np.linspace(0.0, 1.0, 1001)))
+
+    def in_time(spectrum):
+        return 2.0 * (spectrum @ turns).real - spectrum[0].real
+
+    place, rate, acceleration = in_time(x), in_time(s * x), in_time(s**2 * x)
+    balance = acceleration - mu * (1 - place**2) * rate + 0.5 * in_time(s**0.5 * x) + place
+    assert np.abs(balance).max() < 1e-10
+    assert place.max() == pytest.approx(highest, abs=1e-5)
 
 
 @pytest.fixture(scope="module")
@@ -135,9 +152,7 @@ def springpot():
     origin = equilibria["H1"].origin
     exact = equilibria["H1"].exact
     path = origin.system.path("mu")
-    hopf = solve_hopf(
-        origin.system.exact, path, np.zeros(3), exact.parameters["mu"], exact.omega
-    )
+    hopf = solve_hopf(origin.system.exact, path, np.zeros(3), exact.parameters["mu"], exact.omega)
     assert hopf.value == pytest.approx(0.3259981216, abs=1e-10)
     assert hopf.omega == pytest.approx(1.1761963238, abs=1e-10)
     settings = BalanceSettings(tail=1e-12)

@@ -11,8 +11,8 @@ from racs_bif.orbits import (
     FoldOfCycles,
     NeimarkSacker,
     PeriodDoubling,
-    from_samples,
     fourier,
+    from_samples,
 )
 from racs_bif.orbits.balance import Balance
 from racs_bif.orbits.balance_settings import BalanceSettings
@@ -199,7 +199,7 @@ def test_van_der_pol_between(relaxed):
 
 
 def test_harmonics_follow_the_tail(relaxed):
-    problem, found = relaxed
+    _, found = relaxed
     counts = [p.measures["harmonics"] for p in found.points]
     assert counts[0] == 20
     assert counts[-1] > 150
@@ -358,7 +358,7 @@ def test_a_branch_ends_where_harmonics_run_out():
 
 
 def test_a_branch_that_shrinks_to_an_equilibrium_ends():
-    """x' = lam x - w y - x r^2 ..., lam = m (1 - m): orbits live between the Hopf points 0 and 1."""
+    """r' = m (1 - m) r - r^3: orbits live between the Hopf points 0 and 1."""
     system = built(
         {"x": "m*(1 - m)*x - y - x*(x**2 + y**2)", "y": "x + m*(1 - m)*y - y*(x**2 + y**2)"},
         {"x": 0.0, "y": 0.0},

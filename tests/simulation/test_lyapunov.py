@@ -21,11 +21,11 @@ def lorenz():
 def test_the_lorenz_attractor(lorenz):
     # J. C. Sprott, Chaos and Time-Series Analysis (2003): 0.9056, 0, -14.5723
     found = lyapunov_exponents(
-        lorenz.field, np.array([1.0, 1.0, 20.0]), lorenz.values, 80.0, count=3, transient=4.0
+        lorenz.field, np.array([1.0, 1.0, 20.0]), lorenz.values, 48.0, count=3, transient=4.0
     )
     largest, none, least = found.exponents
     assert abs(largest - 0.9056) < 4.0 * found.errors[0]
-    assert found.errors[0] < 0.1
+    assert found.errors[0] < 0.15
     assert none == pytest.approx(0.0, abs=0.02)
     # Volumes shrink at the same rate everywhere.
     assert largest + none + least == pytest.approx(-41.0 / 3.0, abs=1e-4)
@@ -33,7 +33,7 @@ def test_the_lorenz_attractor(lorenz):
     assert found.running[-1] == pytest.approx(found.exponents)
 
 
-def test_a_limit_cycle_has_a_zero_and_its_multiplier(lorenz):
+def test_a_limit_cycle_has_a_zero_and_its_multiplier():
     model = model_from_strings(
         "cycle",
         {"x": "x - 2*y - x*(x**2 + y**2)", "y": "2*x + y - y*(x**2 + y**2)"},
@@ -41,7 +41,7 @@ def test_a_limit_cycle_has_a_zero_and_its_multiplier(lorenz):
     )
     system = system_of(model)
     found = lyapunov_exponents(
-        system.field, np.array([1.0, 0.3]), system.values, 20.0, count=2, transient=12.0
+        system.field, np.array([1.0, 0.3]), system.values, 8.0, count=2, transient=8.0
     )
     assert found.exponents == pytest.approx([0.0, -2.0], abs=1e-5)
     assert np.all(found.errors < 1e-4)
@@ -51,7 +51,7 @@ def test_the_vehicle_at_rest_has_the_exponents_of_its_eigenvalues(vehicle):
     x = vehicle.equilibrium()
     eigenvalues = np.linalg.eigvals(vehicle.field.f_x(x, vehicle.values))
     found = lyapunov_exponents(
-        vehicle.field, x, vehicle.values, 12.0, count=2, transient=6.0, tolerance=1e-7
+        vehicle.field, x, vehicle.values, 5.0, count=2, transient=12.0, tolerance=1e-6
     )
     # The pair of the root turns; over a few turns its growth is seen.
     assert found.exponents.mean() == pytest.approx(eigenvalues.real.max(), abs=2e-3)

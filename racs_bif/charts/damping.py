@@ -1,0 +1,141 @@
+"""The rightmost exact root of many parameter sets at once.
+
+Roots known at one set are polished by Newton's method on det Delta at all others; the rightmost of
+each is certified by the argument principle, which must count nothing right of it. Where it does
+not, all roots of one of these sets are computed anew and the rest is tried again with those.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from racs_bif.charts.counting import count_right
+from racs_bif.errors import ConvergenceError, ParameterError
+from racs_bif.fractional.characteristic import Characteristic
+from racs_bif.fractional.radii import annulus
+from racs_bif.fractional.roots import roots_right
+
+if TYPE_CHECKING:
+    from racs_bif.charts.sums import Sums
+    from racs_bif.fractional.exact import ExactModel
+    from racs_bif.fractional.laws import Complex
+    from racs_bif.symbolic.field import Array
+
+_ITERATIONS = 12
+_CONVERGED = 1e-10
+_BESIDE = 1e-6
+_MOST = 40
+_KEPT = 4
+
+
+@dataclass(frozen=True)
+class Rightmost:
+    """Rightmost roots of N parameter sets.
+
+    Parameters
+    ----------
+    root : complex array (N,)
+        The root, Im >= 0; NaN where it is not certain, or there is none.
+    evaluations : int
+        Number of determinants.
+    """
+
+    root: Complex
+    evaluations: int
+
+
+def rightmost(model: ExactModel, sums: Sums, X: Array, P: Array) -> Rightmost:
+    """Find the rightmost roots.
+
+    Parameters
+    ----------
+    model : ExactModel
+        The model.
+    sums : Sums
+        Its N determinants.
+    X, P : arrays (size, N) and (np, N)
+        Equilibria and base parameters.
+    """
+    count = len(sums)
+    root = np.full(count, np.nan, dtype=complex)
+    sure = np.zeros(count, dtype=bool)
+    hopeless = ~np.isfinite(sums.coefficients).all(axis=0)
+    evaluations, place = 0, count // 2
+    for _ in range(_MOST):
+        rest = np.flatnonzero(~sure & ~hopeless)
+        if not len(rest):
+            break
+        place = place if place in rest else int(rest[len(rest) // 2])
+        known = _roots(model, X[:, place], P[:, place])
+        if known is None:
+            hopeless[place] = True
+            continue
+        better, spent = _tracked(sums.take(rest), known)
+        evaluations += spent
+        both = np.stack([root[rest], better])
+        order = np.where(np.isnan(both), -np.inf, both.real)
+        root[rest] = both[order.argmax(axis=0), np.arange(len(rest))]
+        found = rest[np.isfinite(root[rest].real)]
+        good, spent = _certified(sums.take(found), root[found])
+        evaluations += spent
+        sure[found[good]] = True
+        if not sure[place]:
+            hopeless[place] = True
+    root[~sure] = np.nan
+    return Rightmost(root, evaluations)
+
+
+def _roots(model: ExactModel, X: Array, P: Array) -> Complex | None:
+    """Return the rightmost roots of one set, None where they cannot be found."""
+    try:
+        ch = Characteristic.of_model(model, X, P)
+        lowest = -2.0 * float(np.exp(min(annulus(ch).outer, 200.0)))
+        above = -1.0
+        while above > lowest:
+            roots = roots_right(ch, above).roots
+            if len(roots):
+                return np.asarray(roots[roots.imag >= 0.0][:_KEPT])
+            above *= 10.0
+    except (ConvergenceError, ParameterError):
+        pass
+    return None
+
+
+def _tracked(sums: Sums, known: Complex) -> tuple[Complex, int]:
+    """Return the rightmost of the roots that Newton's method finds from known ones."""
+    best = np.full(len(sums), np.nan, dtype=complex)
+    evaluations = 0
+    for start in known:
+        t = np.full(len(sums), np.log(start + 0j))
+        moving = np.arange(len(sums))
+        done = np.zeros(len(sums), dtype=bool)
+        for _ in range(_ITERATIONS):
+            value, slope, _scale = sums.take(moving).evaluate(t[moving])
+            evaluations += len(moving)
+            with np.errstate(all="ignore"):
+                step = value / slope
+            t[moving] -= step
+            size = np.abs(step)
+            done[moving[size < _CONVERGED]] = True
+            moving = moving[(size >= _CONVERGED) & (size < 2.0)]
+            if not len(moving):
+                break
+        on_sheet = done & (np.abs(t.imag) <= np.pi + _CONVERGED)
+        s = np.exp(np.where(on_sheet, t, 0.0))
+        s = np.where(on_sheet, s.real + 1j * np.abs(s.imag), np.nan)
+        with np.errstate(invalid="ignore"):
+            further = np.isnan(best) | (s.real > best.real)
+        best = np.where(on_sheet & further, s, best)
+    return best, evaluations
+
+
+def _certified(sums: Sums, root: Complex) -> tuple[NDArray[np.bool_], int]:
+    """Say where nothing is right of the roots, by the argument principle."""
+    if not len(root):
+        return np.zeros(0, dtype=bool), 0
+    counts = count_right(sums, root.real + _BESIDE * np.abs(root))
+    return counts.unstable == 0, int(counts.evaluations.sum())
