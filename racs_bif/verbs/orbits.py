@@ -131,6 +131,7 @@ def continue_orbits(
 def _branch(origin: Origin, problem: OrbitProblem, found: Trace, method: str) -> Branch:
     system = origin.system
     sentence, early = assemble.stopped(found)
+    sentence += _beyond_band(origin, found, method)
     _adopt(found)
     special = []
     profiles = {}
@@ -160,6 +161,26 @@ def _branch(origin: Origin, problem: OrbitProblem, found: Trace, method: str) ->
 def hopf_parameter(origin: Origin) -> str:
     """Return the active parameter's name."""
     return str(origin.problem.parameter)
+
+
+def _beyond_band(origin: Origin, found: Trace, method: str) -> str:
+    """Say where orbits are slower or faster than the realisation they were computed on is good."""
+    system = origin.system
+    if not system.fractional or method == "harmonic-balance":
+        return ""
+    low, high = system.settings.band
+    out = [
+        point.parameter
+        for point in found.points
+        if not low <= 2.0 * np.pi / max(point.measures.get("period", 1.0), 1e-300) <= high
+    ]
+    if not out:
+        return ""
+    return (
+        f" Between {hopf_parameter(origin)} = {min(out):.6g} and {max(out):.6g} the frequency of the "
+        f"orbits is outside the realisation's band, {low:g} to {high:g} rad/s: do not trust them "
+        "there; use --orbits harmonic-balance, or a wider --band."
+    )
 
 
 def _adopt(found: Trace) -> None:
