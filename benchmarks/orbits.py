@@ -1,21 +1,22 @@
 """CPU time per point of the vehicle's branch of periodic orbits, by every method.
 
-Run ``python benchmarks/orbits.py``. The branch goes from the Hopf point near u = 10.2 to u = 20 with
-all detectors on; collocation has 40 intervals of degree 4. The numbers are CPU milliseconds of this
-process on one BLAS thread, of three runs the fastest. The comparison with AUTO-07p on the same
-equations is not part of it yet: what AUTO needs is in the design notes (40 ms a point with 20
-states, 120 ms with 31).
+Run ``python benchmarks/orbits.py``. The branch goes from the Hopf point near u = 10.2 to u = 20
+with all detectors on; collocation has 40 intervals of degree 4. The numbers are CPU milliseconds of
+this process on one BLAS thread, of three runs the fastest. AUTO-07p is not run here.
 """
 
 from __future__ import annotations
 
 import time
+from typing import TYPE_CHECKING
 
 import racs_bif as rb
-from racs_bif.results.branch import Branch
-from racs_bif.results.special import SpecialPoint
 from racs_bif.shelf.load import load_model
 from racs_bif.verbs.orbits import METHODS
+
+if TYPE_CHECKING:
+    from racs_bif.results.branch import Branch
+    from racs_bif.results.special import SpecialPoint
 
 MODELS = (
     ("as it is by default", {}),

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from racs_bif.equilibria.calibrate import calibrate
     from racs_bif.results.branch import Branch
+    from racs_bif.results.chart import Chart, ChartSlices
     from racs_bif.results.diagram import Diagram
     from racs_bif.results.files import load, save
     from racs_bif.results.history import TimeHistory
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.strings import model_from_strings
     from racs_bif.verbs.all_equilibria import all_equilibria
     from racs_bif.verbs.certify import certify
+    from racs_bif.verbs.chart import chart_slices, stability_chart
     from racs_bif.verbs.curves import continue_curve
     from racs_bif.verbs.equilibria import continue_equilibria
     from racs_bif.verbs.orbits import continue_orbits
@@ -43,6 +45,8 @@ __version__ = "0.1.0.dev0"
 _HOMES: Final = {
     "Branch": "racs_bif.results.branch",
     "Calibration": "racs_bif.symbolic.model",
+    "Chart": "racs_bif.results.chart",
+    "ChartSlices": "racs_bif.results.chart",
     "DerivedParameter": "racs_bif.symbolic.model",
     "Diagram": "racs_bif.results.diagram",
     "FractionalElement": "racs_bif.symbolic.model",
@@ -51,6 +55,7 @@ _HOMES: Final = {
     "TimeHistory": "racs_bif.results.history",
     "calibrate": "racs_bif.equilibria.calibrate",
     "certify": "racs_bif.verbs.certify",
+    "chart_slices": "racs_bif.verbs.chart",
     "all_equilibria": "racs_bif.verbs.all_equilibria",
     "continue_curve": "racs_bif.verbs.curves",
     "continue_equilibria": "racs_bif.verbs.equilibria",
@@ -61,11 +66,14 @@ _HOMES: Final = {
     "save": "racs_bif.results.files",
     "simulate": "racs_bif.verbs.simulate",
     "spectrum": "racs_bif.verbs.spectrum",
+    "stability_chart": "racs_bif.verbs.chart",
 }
 
 __all__ = [
     "Branch",
     "Calibration",
+    "Chart",
+    "ChartSlices",
     "DerivedParameter",
     "Diagram",
     "FractionalElement",
@@ -75,6 +83,7 @@ __all__ = [
     "all_equilibria",
     "calibrate",
     "certify",
+    "chart_slices",
     "continue_curve",
     "continue_equilibria",
     "continue_orbits",
@@ -84,6 +93,7 @@ __all__ = [
     "save",
     "simulate",
     "spectrum",
+    "stability_chart",
 ]
 
 

@@ -15,7 +15,7 @@ from racs_bif.equilibria.generalised_hopf import GeneralisedHopf
 from racs_bif.fractional.static import StaticField
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     from racs_bif.charts.plane import Plane
     from racs_bif.charts.settings import ChartSettings
@@ -55,7 +55,7 @@ class Seed:
 
 @dataclass(frozen=True)
 class Special:
-    """A point on a boundary where its kind changes: GH."""
+    """A point on a boundary: GH, where l1 changes sign, or UZ, asked for."""
 
     label: str
     values: Array
@@ -115,6 +115,7 @@ def trace_boundary(
     settings: ChartSettings,
     *,
     lyapunov: bool = False,
+    marks: Mapping[str, Sequence[float]] | None = None,
     progress: Callable[[Point], None] | None = None,
 ) -> Boundary:
     """Trace the boundary through a seed.
@@ -129,6 +130,8 @@ def trace_boundary(
         Steps.
     lyapunov : bool
         Compute l1 along a Hopf boundary, and GH points.
+    marks : mapping of str to sequence of float, optional
+        Values of the two parameters at which points are wanted exactly; they are labelled UZ.
     progress : callable, optional
         Called with every point.
 
@@ -148,6 +151,7 @@ def trace_boundary(
         plane.spans[1],
         detectors,
         StepSettings(initial=_FIRST, maximum=settings.step, angle=settings.angle),
+        targets=dict(marks or {}),
         tangent=_tangent(problem, z, plane),
         progress=progress,
     )
@@ -198,7 +202,7 @@ def _boundary(
             {k: float(v) for k, v in raw.data.items() if isinstance(v, int | float)},
         )
         for raw in found.special
-        if raw.label == "GH"
+        if raw.label in {"GH", "UZ"}
     )
     return Boundary(
         kind=seed.kind,

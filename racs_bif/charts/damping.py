@@ -40,12 +40,12 @@ class Rightmost:
     ----------
     root : complex array (N,)
         The root, Im >= 0; NaN where it is not certain, or there is none.
-    evaluations : int
-        Number of determinants.
+    evaluations : int array (N,)
+        Number of determinants for each.
     """
 
     root: Complex
-    evaluations: int
+    evaluations: NDArray[np.int64]
 
 
 def rightmost(model: ExactModel, sums: Sums, X: Array, P: Array) -> Rightmost:
@@ -64,7 +64,7 @@ def rightmost(model: ExactModel, sums: Sums, X: Array, P: Array) -> Rightmost:
     root = np.full(count, np.nan, dtype=complex)
     sure = np.zeros(count, dtype=bool)
     hopeless = ~np.isfinite(sums.coefficients).all(axis=0)
-    evaluations, place = 0, count // 2
+    evaluations, place = np.zeros(count, dtype=np.int64), count // 2
     for _ in range(_MOST):
         rest = np.flatnonzero(~sure & ~hopeless)
         if not len(rest):
@@ -75,13 +75,13 @@ def rightmost(model: ExactModel, sums: Sums, X: Array, P: Array) -> Rightmost:
             hopeless[place] = True
             continue
         better, spent = _tracked(sums.take(rest), known)
-        evaluations += spent
+        evaluations[rest] += spent
         both = np.stack([root[rest], better])
         order = np.where(np.isnan(both), -np.inf, both.real)
         root[rest] = both[order.argmax(axis=0), np.arange(len(rest))]
         found = rest[np.isfinite(root[rest].real)]
         good, spent = _certified(sums.take(found), root[found])
-        evaluations += spent
+        evaluations[found] += spent
         sure[found[good]] = True
         if not sure[place]:
             hopeless[place] = True
@@ -105,17 +105,17 @@ def _roots(model: ExactModel, X: Array, P: Array) -> Complex | None:
     return None
 
 
-def _tracked(sums: Sums, known: Complex) -> tuple[Complex, int]:
+def _tracked(sums: Sums, known: Complex) -> tuple[Complex, NDArray[np.int64]]:
     """Return the rightmost of the roots that Newton's method finds from known ones."""
     best = np.full(len(sums), np.nan, dtype=complex)
-    evaluations = 0
+    evaluations = np.zeros(len(sums), dtype=np.int64)
     for start in known:
         t = np.full(len(sums), np.log(start + 0j))
         moving = np.arange(len(sums))
         done = np.zeros(len(sums), dtype=bool)
         for _ in range(_ITERATIONS):
             value, slope, _scale = sums.take(moving).evaluate(t[moving])
-            evaluations += len(moving)
+            evaluations[moving] += 1
             with np.errstate(all="ignore"):
                 step = value / slope
             t[moving] -= step
@@ -133,9 +133,9 @@ def _tracked(sums: Sums, known: Complex) -> tuple[Complex, int]:
     return best, evaluations
 
 
-def _certified(sums: Sums, root: Complex) -> tuple[NDArray[np.bool_], int]:
+def _certified(sums: Sums, root: Complex) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
     """Say where nothing is right of the roots, by the argument principle."""
     if not len(root):
-        return np.zeros(0, dtype=bool), 0
+        return np.zeros(0, dtype=bool), np.zeros(0, dtype=np.int64)
     counts = count_right(sums, root.real + _BESIDE * np.abs(root))
-    return counts.unstable == 0, int(counts.evaluations.sum())
+    return counts.unstable == 0, counts.evaluations

@@ -45,6 +45,10 @@ class _Boundary(CurveProblem):
         del z
         return _NO_SPECTRUM
 
+    def measures(self, z: Array) -> dict[str, float]:
+        """Return the first parameter, so that its values can be asked for like the second's."""
+        return {self.path.names[0]: float(z[-2])}
+
 
 class HopfBoundary(_Boundary, ExactHopfCurve):
     """A pair of exact characteristic roots on the imaginary axis.
@@ -67,12 +71,12 @@ class HopfBoundary(_Boundary, ExactHopfCurve):
             self._borders.follow(z, _unit(solved.w), _unit(solved.v))
 
     def measures(self, z: Array) -> dict[str, float]:
-        """Return the frequency, and l1 where it is wanted."""
-        omega = self.frequency(z)
+        """Return the first parameter, and l1 where it is wanted."""
+        told = _Boundary.measures(self, z)
         if not self.wanted:
-            return {"omega": omega}
+            return told
         self.evaluations += 2
-        return {"omega": omega, "l1": self.cubic(z).c1.real / omega}
+        return told | {"l1": self.cubic(z).c1.real / self.frequency(z)}
 
     def gradient(self, z: Array) -> Array:
         """Return the derivative (2,) of Re s by the two parameters, along the equilibria."""
@@ -88,11 +92,6 @@ class FoldBoundary(_Boundary, ExactFoldCurve):
     """Where the equilibrium itself ends, in a fold."""
 
     name = "fold boundary"
-
-    def measures(self, z: Array) -> dict[str, float]:
-        """Return nothing further."""
-        del z
-        return {}
 
 
 class StaticBoundary(_Boundary, BranchPointCurve):

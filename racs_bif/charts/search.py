@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.charts.boundary import Boundary, trace_boundary
+from racs_bif.charts.boundary import Boundary, Seed, trace_boundary
 from racs_bif.charts.edges import Edge
 from racs_bif.charts.lattice import Key, Lattice
 from racs_bif.errors import ConvergenceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from racs_bif.charts.plane import Plane
     from racs_bif.charts.settings import ChartSettings
@@ -64,6 +64,7 @@ def search(
     settings: ChartSettings,
     *,
     lyapunov: bool = False,
+    marks: Mapping[str, Sequence[float]] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Search:
     """Find and trace the boundaries in a plane.
@@ -76,6 +77,8 @@ def search(
         How finely it is searched.
     lyapunov : bool
         Compute l1 along Hopf boundaries.
+    marks : mapping of str to sequence of float, optional
+        Values of the parameters at which points of boundaries are wanted exactly.
     progress : callable, optional
         Told what is being done.
 
@@ -85,6 +88,11 @@ def search(
         If there is no equilibrium anywhere in the plane.
     """
     tell = progress or (lambda _: None)
+
+    def follow(seed: Seed) -> Boundary:
+        tell(f"tracing boundary {len(found.boundaries) + 1}")
+        return trace_boundary(plane, seed, settings, lyapunov=lyapunov, marks=marks)
+
     lattice = Lattice(plane, settings.depth)
     spacing = 2 ** (settings.depth - settings.coarse)
     tell("searching")
@@ -93,8 +101,8 @@ def search(
     found = Search(lattice, [(i, j, spacing) for i in steps for j in steps])
     edges: dict[EdgeKey, Edge] = {}
     while True:
-        _trace_all(found, edges, settings, tell, lyapunov=lyapunov)
-        _trace_folds(found, edges, settings, tell)
+        _trace_all(found, edges, follow)
+        _trace_folds(found, edges, follow)
         unsure = [cell for cell in found.cells if cell[2] > 1 and _hides(found, cell)]
         if not unsure:
             break
@@ -106,10 +114,7 @@ def search(
 def _trace_all(
     found: Search,
     edges: dict[EdgeKey, Edge],
-    settings: ChartSettings,
-    tell: Callable[[str], None],
-    *,
-    lyapunov: bool,
+    follow: Callable[[Seed], Boundary],
 ) -> None:
     """Trace boundaries until they explain every edge, or no more can be found."""
     hopeless: set[EdgeKey] = set()
@@ -125,9 +130,8 @@ def _trace_all(
             if seed is None:
                 hopeless.add(key)
                 continue
-            tell(f"tracing boundary {len(found.boundaries) + 1}")
             try:
-                boundary = trace_boundary(found.lattice.plane, seed, settings, lyapunov=lyapunov)
+                boundary = follow(seed)
             except (ConvergenceError, np.linalg.LinAlgError) as error:
                 found.troubles.append(f"a {seed.kind} boundary could not be traced: {error}")
                 hopeless.add(key)
@@ -146,8 +150,7 @@ def _trace_all(
 def _trace_folds(
     found: Search,
     edges: dict[EdgeKey, Edge],
-    settings: ChartSettings,
-    tell: Callable[[str], None],
+    follow: Callable[[Seed], Boundary],
 ) -> None:
     """Trace folds behind which the equilibria of neighbouring nodes are not the same."""
     keys = _edges(found)
@@ -160,9 +163,8 @@ def _trace_folds(
             seed = line.seed(found.boundaries)
             if seed is None:
                 continue
-            tell(f"tracing boundary {len(found.boundaries) + 1}")
             try:
-                found.boundaries.append(trace_boundary(found.lattice.plane, seed, settings))
+                found.boundaries.append(follow(seed))
             except (ConvergenceError, np.linalg.LinAlgError) as error:
                 found.troubles.append(f"a fold boundary could not be traced: {error}")
 

@@ -123,6 +123,7 @@ def read_numbers(name: str, numbers: Array, sizes: tuple[int, int], *, feedthrou
         msg = f"the law of '{name}' is not finite at these parameters; check its orders and times"
         raise ParameterError(msg)
     n, d = _split(numbers, sizes)
+    _check_orders(name, n, d)
     lowest = min(n.exponents.min(), d.exponents.min())
     law = Law(
         PowerSum(n.coefficients, n.exponents - lowest),
@@ -154,6 +155,18 @@ def _split(numbers: Array, sizes: tuple[int, int]) -> tuple[PowerSum, PowerSum]:
         PowerSum(numbers[:a], numbers[a : 2 * a]),
         PowerSum(numbers[2 * a : 2 * a + b], numbers[2 * a + b :]),
     )
+
+
+def _check_orders(name: str, *sums: PowerSum) -> None:
+    """Refuse fractional orders that are not between -2 and 2."""
+    for power_sum in sums:
+        for order in power_sum.exponents:
+            if abs(order) > 2.0 and order != round(order):
+                msg = (
+                    f"the law of '{name}' has the order {order:g}; fractional orders lie between -2 and 2: "
+                    "use derivatives of its input, or two elements"
+                )
+                raise ParameterError(msg)
 
 
 def _check(law: Law) -> None:

@@ -150,7 +150,7 @@ class HarmonicBalanceProblem(OrbitProblem):
         return self._solution[1]
 
     def _exactly(self, z: Array) -> Balanced:
-        """Return the balance at `z` without keeping it: of little work that is worth it."""
+        """Return the balance at `z` without keeping it, for what needs no Jacobian."""
         return self.balance.at(self.series(z).copy(), self.period(z), float(z[-1]))
 
     def _near(self, z: Array) -> Balanced:

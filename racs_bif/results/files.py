@@ -6,7 +6,8 @@ A file has a group for each branch, which opens in xarray::
 
 with the parameters, states and measures as variables that know their units, eigenvalues or
 multipliers with a trailing dimension ``re_im``, and beneath it groups with the system, the special
-points and the profiles of orbits. A time history has the one group ``history``.
+points and the profiles of orbits. A time history has the one group ``history``, a chart the group
+``chart1`` and its slices one each, their boundaries, regions and maps beneath.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from pathlib import Path
 from racs_bif.errors import FileError
 from racs_bif.results.atomic import write_atomically
 from racs_bif.results.branch import Branch
+from racs_bif.results.chart import Chart, ChartSlices
+from racs_bif.results.chart_tree import CHART, SLICES, decode_charts, encode_charts
 from racs_bif.results.decode import decode_branch
 from racs_bif.results.diagram import Diagram
 from racs_bif.results.encode import encode_branch
@@ -23,19 +26,20 @@ from racs_bif.results.history import TimeHistory
 from racs_bif.results.history_tree import GROUP, decode_history, encode_history
 from racs_bif.results.tree import Attribute, Node, fingerprint, read_tree, words, write_tree
 
+Result = Branch | Diagram | TimeHistory | Chart | ChartSlices
 FORMAT = 1
 """Version of the layout; a reader refuses a newer one."""
 _CHECKSUM = "sha256"
 
 
-def save(result: Branch | Diagram | TimeHistory, path: str | Path) -> Path:
-    """Save a branch, a diagram or a time history as a netCDF-4 file.
+def save(result: Result, path: str | Path) -> Path:
+    """Save a branch, a diagram, a time history or a chart as a netCDF-4 file.
 
     The file appears whole or not at all.
 
     Parameters
     ----------
-    result : Branch, Diagram or TimeHistory
+    result : Branch, Diagram, TimeHistory, Chart or ChartSlices
         What to save.
     path : str or Path
         Where; an existing file is replaced.
@@ -51,13 +55,13 @@ def save(result: Branch | Diagram | TimeHistory, path: str | Path) -> Path:
         If it cannot be written there.
     """
     path = Path(path)
-    node = _encode_history(result) if isinstance(result, TimeHistory) else _encode_branches(result)
+    node = _encode(result)
     node.attributes[_CHECKSUM] = fingerprint(node)
     write_atomically(path, lambda part: write_tree(part, node))
     return path
 
 
-def load(path: str | Path) -> Branch | Diagram | TimeHistory:
+def load(path: str | Path) -> Result:
     """Load what `save` saved, bit for bit.
 
     Raises
@@ -84,8 +88,21 @@ def load(path: str | Path) -> Branch | Diagram | TimeHistory:
         raise FileError(msg)
     if node.attributes["content"] == GROUP:
         return decode_history(node.groups[GROUP])
+    if node.attributes["content"] in {CHART, SLICES}:
+        return decode_charts(node)
     branches = [decode_branch(node.groups[n]) for n in words(node.attributes["branches"])]
     return branches[0] if node.attributes["content"] == "branch" else Diagram(*branches)
+
+
+def _encode(result: Result) -> Node:
+    if isinstance(result, TimeHistory):
+        return _encode_history(result)
+    if isinstance(result, Chart | ChartSlices):
+        charts = result.charts if isinstance(result, ChartSlices) else (result,)
+        node = encode_charts(result)
+        node.attributes |= _about(charts[0].system.version)
+        return node
+    return _encode_branches(result)
 
 
 def _encode_branches(result: Branch | Diagram) -> Node:

@@ -189,6 +189,7 @@ def as_branch(
 ) -> Branch:
     """Return a traced branch as a result, its Hopf points checked on the exact model."""
     sentence, early = assemble.stopped(found)
+    sentence += _beyond_band(system, found)
     named = [(raw, _special(system, problem, raw, span)) for raw in found.special]
     states = np.array([p.z[:-1] for p in found.points])
     return Branch(
@@ -204,6 +205,21 @@ def as_branch(
         system=describe(system),
         method="pseudo-arclength",
         **assemble.columns(found.points),
+    )
+
+
+def _beyond_band(system: System, found: Trace) -> str:
+    """Say which Hopf points lie where the realisation is not meant to be good."""
+    if not system.fractional:
+        return ""
+    low, high = system.settings.band
+    out = [p for p in found.special if p.label == "H" and not low <= p.data["omega"] <= high]
+    if not out:
+        return ""
+    names = ", ".join(f"{p.name} ({p.data['omega']:.4g} rad/s)" for p in out)
+    return (
+        f" The frequency of {names} is outside the realisation's band, {low:g} to {high:g} rad/s: "
+        "trust the exact values only, or give another --band."
     )
 
 

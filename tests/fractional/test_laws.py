@@ -162,3 +162,8 @@ def test_principal_branch(law_of):
     assert complex(law(-1.0 + 1e-9j)) == pytest.approx(cmath.sqrt(-1.0 + 1e-9j), rel=1e-15)
     for s in POINTS:
         assert complex(law(np.conj(s))) == np.conj(complex(law(s)))
+
+
+def test_orders_beyond_two_are_refused(law_of):
+    with pytest.raises(ParameterError, match="has the order 2.5; fractional orders lie between -2 and 2"):
+        law_of("(1 + s**q)/(1 + s**a)", q=2.5, a=2.0)

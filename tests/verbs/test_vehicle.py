@@ -164,3 +164,13 @@ def test_orbits_need_a_hopf_point_of_this_process(equilibria: Branch, orbits: Br
         rb.continue_orbits(equilibria["H1"], (15, 30))
     with pytest.raises(UsageError, match="did you mean 'shooting'"):
         rb.continue_orbits(equilibria["H1"], method="shoting")
+
+
+def test_a_band_that_excludes_the_critical_frequency_is_warned_of() -> None:
+    system = rb.load_model("racs", band=(20.0, 500.0), order=14)
+    branch = rb.continue_equilibria(system, "u", (5, 30))
+    assert "is outside the realisation's band, 20 to 500 rad/s" in branch.stopped
+    hopf = next(p for p in branch.special if p.label == "H")
+    assert hopf.exact.parameters["u"] == pytest.approx(10.2, rel=1e-9)
+    inside = rb.continue_equilibria(rb.load_model("racs"), "u", (5, 30))
+    assert "band" not in inside.stopped

@@ -1,0 +1,351 @@
+"""A stability chart as data: boundaries, regions, and a map where there is one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from racs_bif.charts.faces import Face
+from racs_bif.errors import UsageError
+from racs_bif.results.provenance import SystemInfo
+from racs_bif.results.same import same
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+Reals = NDArray[np.float64]
+Span = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoundaryPoint:
+    """A point on a boundary that has a name.
+
+    Parameters
+    ----------
+    label : str
+        "GH", where the first Lyapunov coefficient changes sign, or "UZ", asked for.
+    parameters : dict of str to float
+        Where, SI.
+    data : dict of str to float
+        omega, l1, l2.
+    """
+
+    label: str
+    parameters: Mapping[str, float]
+    data: Mapping[str, float]
+
+    def __eq__(self, other: object) -> bool:
+        """Compare bit by bit."""
+        return same(self, other) if isinstance(other, BoundaryPoint) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChartBoundary:
+    """A boundary, m points long, every one of them exact.
+
+    Parameters
+    ----------
+    kind : {"hopf", "static", "fold"}
+        A pair of roots crosses the imaginary axis, a real root crosses zero, or the equilibrium
+        ends in a fold.
+    values : array (m, 2)
+        The two parameters, SI.
+    omega : array (m,)
+        Frequency of the critical pair [rad/s], NaN but on a Hopf boundary.
+    l1 : array (m,)
+        First Lyapunov coefficient [Kuznetsov: Re c1 / omega, |q| = 1], NaN where not computed.
+    line : array (k, 2)
+        A smooth line through the points, parameters, SI: for pictures.
+    closed : bool
+        Whether it is a closed curve.
+    complete : bool
+        Whether it ends at the box, on another boundary, or is closed.
+    stopped : str
+        Why it ended.
+    points : tuple of BoundaryPoint
+        GH and UZ points.
+    """
+
+    kind: str
+    values: Reals
+    omega: Reals
+    l1: Reals
+    line: Reals
+    closed: bool
+    complete: bool
+    stopped: str
+    points: tuple[BoundaryPoint, ...] = ()
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.values)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare bit by bit."""
+        return same(self, other) if isinstance(other, ChartBoundary) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChartRegion:
+    """A region between boundaries.
+
+    Parameters
+    ----------
+    unstable : int
+        Number of unstable roots; -1 where it could not be counted, -2 where no equilibrium was
+        found.
+    area : float
+        Its share of the plane.
+    place : array (2,)
+        Parameters well inside it, SI.
+    loops : tuple of arrays (k, 2)
+        Its outline and holes in it, SI.
+    nodes, disagreeing : int
+        Places at which the search counted within it, and how many of them have another number.
+    """
+
+    unstable: int
+    area: float
+    place: Reals
+    loops: tuple[Reals, ...]
+    nodes: int
+    disagreeing: int
+
+    def __eq__(self, other: object) -> bool:
+        """Compare bit by bit."""
+        return same(self, other) if isinstance(other, ChartRegion) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChartMap:
+    """A map over the plane, (n1, n2) cells, each computed at its middle.
+
+    Parameters
+    ----------
+    quantity : {"count", "damping"}
+        What was asked for.
+    unstable : int8 array (n1, n2)
+        Number of unstable roots; -1 where they could not be counted, -2 without an equilibrium.
+    sigma, omega : array (n1, n2)
+        Rightmost root, 1/s and rad/s; NaN where it is not certain, and for a map of counts.
+    evaluations : int
+        Determinants that it took.
+    """
+
+    quantity: str
+    unstable: NDArray[np.int8]
+    sigma: Reals
+    omega: Reals
+    evaluations: int
+
+    def __eq__(self, other: object) -> bool:
+        """Compare bit by bit."""
+        return same(self, other) if isinstance(other, ChartMap) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Chart:
+    """A stability chart of a plane of two parameters.
+
+    Parameters
+    ----------
+    parameters : (str, str)
+        The parameters.
+    spans : ((float, float), (float, float))
+        Their intervals, SI.
+    boundaries : tuple of ChartBoundary
+        What parts the regions.
+    regions : tuple of ChartRegion
+        The largest first.
+    node_values : array (N, 2)
+        Where the search counted.
+    node_counts : int array (N,)
+        What it counted there; negative as in `ChartRegion`.
+    system : SystemInfo
+        What it was computed from; its parameters hold besides the two.
+    map : ChartMap, optional
+        A map that was asked for.
+    unexplained : int
+        Places between neighbouring nodes where counts differ for no boundary that was found.
+    torn : int
+        Places between neighbouring nodes where more than one equilibrium is continued.
+    evaluations : int
+        Characteristic matrices, and derivatives of them, that the boundaries took.
+    per_count : float
+        Mean number of determinants of one count.
+    troubles : tuple of str
+        What went wrong.
+    seconds : float
+        How long it took; not saved, and not compared.
+    """
+
+    parameters: tuple[str, str]
+    spans: tuple[Span, Span]
+    boundaries: tuple[ChartBoundary, ...]
+    regions: tuple[ChartRegion, ...]
+    node_values: Reals
+    node_counts: NDArray[np.int64]
+    system: SystemInfo
+    map: ChartMap | None = None
+    unexplained: int = 0
+    torn: int = 0
+    evaluations: int = 0
+    per_count: float = 0.0
+    troubles: tuple[str, ...] = ()
+    seconds: float = field(default=0.0, compare=False)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare bit by bit; how long it took is left out."""
+        return same(self, other) if isinstance(other, Chart) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """Return one line: of what, how many boundaries, which regions."""
+        numbers = ", ".join(describe_count(region.unstable) for region in self.regions)
+        return (
+            f"<stability chart of {self.system.model} over {', '.join(self.parameters)}: "
+            f"{len(self.boundaries)} boundaries, unstable roots by region: {numbers}>"
+        )
+
+    @property
+    def early(self) -> bool:
+        """Whether something that was looked for may be missing."""
+        return bool(self.unexplained or self.troubles) or not all(
+            boundary.complete for boundary in self.boundaries
+        )
+
+    @property
+    def nominal(self) -> Reals | None:
+        """The model's own values of the two parameters (2,); None where they are outside."""
+        own = np.array([self.system.parameters[name] for name in self.parameters])
+        low, high = np.array(self.spans).T
+        return own if bool(np.all((own >= low) & (own <= high))) else None
+
+    def unstable_at(self, **values: float) -> int:
+        """Return the number of unstable roots at a place, from the region that it is in.
+
+        Parameters
+        ----------
+        **values : float
+            Both parameters by name, SI.
+
+        Returns
+        -------
+        int
+            As of `ChartRegion`; -1 exactly on a boundary.
+
+        Raises
+        ------
+        UsageError
+            If a parameter is missing, or the place is outside the chart.
+        """
+        first, second = self.parameters
+        if set(values) != {first, second}:
+            msg = f"give both parameters of the chart, {first} and {second}"
+            raise UsageError(msg)
+        place = np.array([[values[first], values[second]]])
+        low, high = np.array(self.spans).T
+        if not bool(np.all((place >= low) & (place <= high))):
+            msg = f"{first} = {values[first]:g}, {second} = {values[second]:g} is outside the chart"
+            raise UsageError(msg)
+        edge = 1e-9
+        unit = np.clip((place - low) / (high - low), edge, 1.0 - edge)
+        for region in reversed(self.regions):
+            outline, *holes = ((loop - low) / (high - low) for loop in region.loops)
+            if Face(outline, tuple(holes)).contains(unit)[0]:
+                return region.unstable
+        return -1
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the points of all boundaries as a table, a point a row."""
+        import pandas as pd
+
+        tables = []
+        for k, boundary in enumerate(self.boundaries):
+            columns: dict[str, object] = {"boundary": k + 1, "kind": boundary.kind}
+            columns |= dict(zip(self.parameters, boundary.values.T, strict=True))
+            columns |= {"omega": boundary.omega, "l1": boundary.l1}
+            tables.append(pd.DataFrame(columns))
+        names = ["boundary", "kind", *self.parameters, "omega", "l1"]
+        return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=names)
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the chart; see `racs_bif.plots.chart.draw`."""
+        from racs_bif.plots.chart import draw
+
+        return draw(self, ax=ax)
+
+
+def describe_count(unstable: int) -> str:
+    """Return a number of unstable roots in words.
+
+    Examples
+    --------
+    >>> describe_count(0), describe_count(2), describe_count(-2)
+    ('stable', '2 unstable', 'no equilibrium')
+    """
+    words = {0: "stable", -1: "unknown", -2: "no equilibrium"}
+    return words.get(unstable, f"{unstable} unstable")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChartSlices:
+    """Charts of the same plane at several values of a third parameter.
+
+    Parameters
+    ----------
+    parameter : str
+        The third parameter.
+    charts : tuple of Chart
+        One for each value, which is among the parameters of the chart's system.
+    """
+
+    parameter: str
+    charts: tuple[Chart, ...]
+
+    def __len__(self) -> int:
+        """Return the number of slices."""
+        return len(self.charts)
+
+    def __iter__(self) -> Iterator[Chart]:
+        """Iterate over the charts."""
+        return iter(self.charts)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare bit by bit."""
+        return same(self, other) if isinstance(other, ChartSlices) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Values of the third parameter, SI."""
+        return tuple(chart.system.parameters[self.parameter] for chart in self.charts)
+
+    @property
+    def early(self) -> bool:
+        """Whether something that was looked for may be missing in one of them."""
+        return any(chart.early for chart in self.charts)
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw all on one picture; see `racs_bif.plots.slices.draw`."""
+        from racs_bif.plots.slices import draw
+
+        return draw(self, ax=ax)
