@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from racs_bif.charts.backends import Backend
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
 _AHEAD = 3
 _RETRIES = 3
 _PATIENCE = 20.0
-_EXTRA = "distributed"
 
 
 class DaskCluster(Backend):
@@ -38,10 +36,11 @@ class DaskCluster(Backend):
     def __init__(self, address: str) -> None:
         self.address = address
         try:
-            self._dask: Any = import_module(_EXTRA)
+            import distributed
         except ImportError:
             msg = "a scheduler needs dask.distributed: pip install 'racs-bif[cluster]'"
             raise UsageError(msg) from None
+        self._dask: Any = distributed
 
     def run(self, job: MapJob, tiles: Sequence[int]) -> Iterator[tuple[int, Tile]]:
         """Yield every tile with its number as it is done.

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from racs_bif.numerics.sparse import LARGE
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -60,12 +62,16 @@ class Bank:
         """Return derivatives (ny + nz,) from what the core returns, (y', e)."""
         if not self.filters:
             return values
+        if self.own < LARGE:
+            return self.left @ values
         return np.concatenate((values[: self.own], self.B @ values[self.own :]))
 
     def gather(self, x: NDArray[Any]) -> NDArray[Any]:
         """Return what the core takes, (y, C z), from states (ny + nz,)."""
         if not self.filters:
             return x
+        if self.own < LARGE:
+            return self.right @ x
         return np.concatenate((x[: self.own], self.C @ x[self.own :]))
 
     def around(self, core: Any) -> Any:  # noqa: ANN401 - scipy has no types

@@ -118,12 +118,8 @@ def _balanced(matrix: Matrix) -> Matrix:
         columns = np.bincount(column, now, len(scale))
         both = (rows > 0.0) & (columns > 0.0)
         ratio = np.divide(rows, columns, out=np.ones_like(rows), where=both)
-        # The fourth root: each entry is in a row and in a column, and both move at once. Powers of
-        # two do not round.
-        factor = np.exp2(np.rint(0.25 * np.log2(ratio)))
-        if np.all(factor == 1.0):
-            break
-        scale *= factor
+        # The fourth root: each entry is in a row and in a column, and both move at once.
+        scale *= ratio**0.25
     entries.data = entries.data * scale[column] / scale[row]
     return entries.tocsc()
 

@@ -21,6 +21,7 @@ from racs_bif.orbits.intervals import GROWTH, BorderedIntervals, Linearised
 from racs_bif.orbits.piecewise import Piecewise, equidistant
 from racs_bif.orbits.polishing import direction, polished
 from racs_bif.orbits.problem import OrbitProblem
+from racs_bif.orbits.sparse_jacobian import sparse_jacobian
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Point
@@ -45,6 +46,9 @@ class CollocationProblem(OrbitProblem):
     and the active parameter. The equations are p' = tau f(p) at the m Gauss points of every
     interval, divided by the scales of the states, the integral phase condition against the orbit
     accepted before, and g = its number, which never changes while an orbit is solved for.
+
+    Gauss methods are not damped at infinity: a mode that decays by far within an interval is given
+    a multiplier between 0 and 1 that is too large, never one outside the unit circle (even degree).
 
     Parameters
     ----------
@@ -134,29 +138,9 @@ class CollocationProblem(OrbitProblem):
 
     def jacobian(self, z: Array) -> Any:  # noqa: ANN401 - scipy's arrays have no types
         """Return the exact derivative (N m n + 2, N m n + 3) of the residual, a sparse array."""
-        from scipy.sparse import block_array, bsr_array, csr_array
-
-        at, reference, g = self._at(z), self.reference(z), self._gauss
-        count, degree, n = self.nodes(z).shape
-        width = degree * n
-        jacobians = at.tau[:, None, None, None] * self.equations.jacobians(at)
-        blocks = -np.einsum("jl,kjab->kjlab", g.values, jacobians)
-        diagonals = np.einsum("kjlaa->kjla", blocks)
-        diagonals += g.slopes[:, :, None]
-        blocks /= reference.scales[:, None]
-        # rows of n x n blocks: the nodes of an interval, and the first of the next
-        places = (np.arange(count)[:, None] * degree + np.arange(degree + 1)) % (count * degree)
-        indices = np.repeat(places, degree, axis=0).ravel()
-        starts = np.arange(count * degree + 1) * (degree + 1)
-        ring = bsr_array((blocks.reshape(-1, n, n), indices, starts), shape=(count * width,) * 2)
-        columns = -(self.equations.columns(at) / reference.scales).reshape(2, -1)
-        columns = np.stack((columns[0], np.zeros_like(columns[0]), columns[1]), axis=1)
-        rows = g.values.T @ reference.weights
-        phase = rows[:, :degree].copy()
-        phase[:, 0] += np.roll(rows[:, degree], 1, axis=0)
-        border = csr_array(np.stack((phase.ravel(), np.zeros(count * width))))
-        corner = csr_array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-        return block_array([[ring, csr_array(columns)], [border, corner]], format="csc")
+        at, reference = self._at(z), self.reference(z)
+        jacobians = self.equations.jacobians(at)
+        return sparse_jacobian(at, jacobians, self.equations.columns(at), reference)
 
     def bordered(self, z: Array, row: Array) -> Solver:
         """Return a solver of [jacobian; row] by condensation; see `BorderedIntervals`."""

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Reals = NDArray[np.float64]
 Span = tuple[float, float]
@@ -232,6 +233,16 @@ class Chart:
         )
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """What is to be known about a chart in which nothing went wrong."""
+        if not self.torn:
+            return ()
+        return (
+            "More than one equilibrium is continued over part of the plane, between its folds; the "
+            "counts there are those of one of them.",
+        )
+
+    @property
     def nominal(self) -> Reals | None:
         """The model's own values of the two parameters (2,); None where they are outside."""
         own = np.array([self.system.parameters[name] for name in self.parameters])
@@ -344,8 +355,8 @@ class ChartSlices:
         """Whether something that was looked for may be missing in one of them."""
         return any(chart.early for chart in self.charts)
 
-    def plot(self, *, ax: Axes | None = None) -> Axes:
-        """Draw all on one picture; see `racs_bif.plots.slices.draw`."""
-        from racs_bif.plots.slices import draw
+    def plot(self) -> Figure:
+        """Draw all on one figure; see `racs_bif.plots.chart.picture_slices`."""
+        from racs_bif.plots.chart import picture_slices
 
-        return draw(self, ax=ax)
+        return picture_slices(self)

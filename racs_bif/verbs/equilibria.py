@@ -120,7 +120,7 @@ def follow(
         Number of the model's own states; all where left out.
     """
     detectors = [Fold(), BranchPoint(), Hopf(len(z) - 1 if own is None else own)]
-    return trace(
+    found = trace(
         problem,
         z,
         span,
@@ -130,6 +130,13 @@ def follow(
         tangent=tangent,
         progress=progress,
     )
+    if np.isfinite(problem.height):
+        note = (
+            f"Unstable eigenvalues were looked for up to an imaginary part of {problem.height:.4g} "
+            "only, and those found are counted."
+        )
+        found.message = f"{found.message}\n{note}".strip()
+    return found
 
 
 def check_span(system: System, parameter: str, span: tuple[float, float]) -> tuple[float, float]:
