@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from racs_bif.equilibria.calibrate import calibrate
     from racs_bif.results.branch import Branch
-    from racs_bif.results.chart import Chart, ChartSlices
+    from racs_bif.results.chart import Chart
+    from racs_bif.results.chart_slices import ChartSlices
     from racs_bif.results.diagram import Diagram
     from racs_bif.results.files import load, save
     from racs_bif.results.history import TimeHistory
@@ -46,7 +47,7 @@ _HOMES: Final = {
     "Branch": "racs_bif.results.branch",
     "Calibration": "racs_bif.symbolic.model",
     "Chart": "racs_bif.results.chart",
-    "ChartSlices": "racs_bif.results.chart",
+    "ChartSlices": "racs_bif.results.chart_slices",
     "DerivedParameter": "racs_bif.symbolic.model",
     "Diagram": "racs_bif.results.diagram",
     "FractionalElement": "racs_bif.symbolic.model",

@@ -20,12 +20,13 @@ if TYPE_CHECKING:
     from racs_bif.charts.plane import Plane
     from racs_bif.charts.settings import ChartSettings
     from racs_bif.continuation.points import Point, Trace
+    from racs_bif.continuation.points import SpecialPoint as RawPoint
     from racs_bif.equilibria.curve_problem import CurveProblem
     from racs_bif.symbolic.field import Array
 
-KINDS = ("hopf", "static", "fold")
 BETWEEN = 4
 """Stretches of the line between two points."""
+_NAMED = ("GH", "UZ")
 _STRAIGHT = 0.5
 _FIRST = 2e-3
 _AT_BOX = 1e-8
@@ -158,9 +159,15 @@ def trace_boundary(
     return _boundary(plane, seed, problem, found)
 
 
-def _problem(plane: Plane, seed: Seed) -> tuple[HopfBoundary | FoldBoundary | StaticBoundary, Array]:
+def _problem(
+    plane: Plane, seed: Seed
+) -> tuple[HopfBoundary | FoldBoundary | StaticBoundary, Array]:
     system = plane.system
-    kinds = {"hopf": HopfBoundary, "static": StaticBoundary, "fold": FoldBoundary}
+    kinds: dict[str, type[HopfBoundary | FoldBoundary | StaticBoundary]] = {
+        "hopf": HopfBoundary,
+        "static": StaticBoundary,
+        "fold": FoldBoundary,
+    }
     extra = {"hopf": [seed.omega], "static": [0.0], "fold": []}[seed.kind]
     static = StaticField(system.exact)
     problem = kinds[seed.kind](static, system.field, plane.path, plane.spans[0])
@@ -195,15 +202,7 @@ def _boundary(
         gradient = np.array([problem.gradient(p.z) for p in points]) * plane.width
     line = _line(plane, points)
     ends = _ends(plane, found, values)
-    special = tuple(
-        Special(
-            raw.label,
-            raw.z[-2:].copy(),
-            {k: float(v) for k, v in raw.data.items() if isinstance(v, int | float)},
-        )
-        for raw in found.special
-        if raw.label in {"GH", "UZ"}
-    )
+    special = tuple(_special(raw, n, seed.kind) for raw in found.special if raw.label in _NAMED)
     return Boundary(
         kind=seed.kind,
         values=values,
@@ -218,6 +217,14 @@ def _boundary(
         special=special,
         evaluations=problem.evaluations,
     )
+
+
+def _special(raw: RawPoint, n: int, kind: str) -> Special:
+    data = {k: float(v) for k, v in raw.data.items() if isinstance(v, int | float)}
+    data.pop("target", None)
+    if kind == "hopf":
+        data.setdefault("omega", float(raw.z[n]))
+    return Special(raw.label, raw.z[-2:].copy(), data)
 
 
 def _ends(plane: Plane, found: Trace, values: Array) -> list[Stopped]:
@@ -248,9 +255,10 @@ def _line(plane: Plane, points: list[Point]) -> Array:
     unit = slopes / np.where(sizes > 0.0, sizes, 1.0)
     begin, end = unit[:-1], unit[1:]
     # At a cusp the direction turns back: there the curve is drawn straight.
-    straight = np.minimum(
-        (begin * chords).sum(axis=1), (end * chords).sum(axis=1)
-    ) < _STRAIGHT * lengths[:, 0]
+    straight = (
+        np.minimum((begin * chords).sum(axis=1), (end * chords).sum(axis=1))
+        < _STRAIGHT * lengths[:, 0]
+    )
     begin = np.where(straight[:, None], chords / lengths, begin)
     end = np.where(straight[:, None], chords / lengths, end)
     pieces = []
@@ -263,4 +271,4 @@ def _line(plane: Plane, points: list[Point]) -> Array:
             + (s3 - s2) * lengths * end
         )
     line = np.stack(pieces, axis=1).reshape(-1, 2)
-    return np.clip(np.vstack([line, at[-1]]), 0.0, 1.0)
+    return np.asarray(np.clip(np.vstack([line, at[-1]]), 0.0, 1.0))

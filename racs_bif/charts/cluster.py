@@ -61,7 +61,10 @@ class DaskCluster(Backend):
             yield from self._run(client, job, tiles)
 
     def _run(
-        self, client: Any, job: MapJob, tiles: Sequence[int]  # noqa: ANN401 - has no types
+        self,
+        client: Any,  # noqa: ANN401 - has no types
+        job: MapJob,
+        tiles: Sequence[int],
     ) -> Iterator[tuple[int, Tile]]:
         waiting = iter(tiles)
         # Not scattered: data held by one worker alone would be lost with it.

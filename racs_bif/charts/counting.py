@@ -31,7 +31,7 @@ _FEW = 1 << 14
 _MANY = 1 << 11
 _QUARTER = 0.5 * np.pi
 
-Places = NDArray[np.int64]
+Places = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -139,8 +139,10 @@ def count_right(sums: Sums, above: Array | float = 0.0) -> Counts:
     above : float or array (N,)
         The lines. Left of zero the branch cut is left out.
     """
-    parts = [_count(sums.take(np.arange(k, min(k + _MANY, len(sums)))), _part(above, k))
-             for k in range(0, len(sums), _MANY)]
+    parts = [
+        _count(sums.take(np.arange(k, min(k + _MANY, len(sums)))), _part(above, k))
+        for k in range(0, len(sums), _MANY)
+    ]
     return Counts(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
@@ -148,9 +150,13 @@ def _part(above: Array | float, k: int) -> Array | float:
     return above[k : k + _MANY] if isinstance(above, np.ndarray) else above
 
 
-def _count(sums: Sums, above: Array | float) -> tuple[Array, ...]:
+def _count(
+    sums: Sums, above: Array | float
+) -> tuple[NDArray[np.int64], Array, Array, NDArray[np.int64]]:
     line = np.broadcast_to(np.asarray(above, dtype=float), (len(sums),))
-    good = np.flatnonzero(np.isfinite(sums.coefficients).all(axis=0) & sums.coefficients.any(axis=0))
+    good = np.flatnonzero(
+        np.isfinite(sums.coefficients).all(axis=0) & sums.coefficients.any(axis=0)
+    )
     columns = (
         np.full(len(sums), UNKNOWN, dtype=np.int64),
         np.zeros(len(sums)),
@@ -195,8 +201,9 @@ def _on_axis(tally: _Tally) -> Array:
     left = tuple(c[:-1].reshape(-1) for c in columns)
     right = tuple(c[1:].reshape(-1) for c in columns)
     tally.follow(_Steps(owner, left, right), contour)
-    ends = np.full(len(sums), top), np.full(len(sums), bottom)
-    return _closed(tally, *(end + 1j * _QUARTER for end in ends), np.ones(len(sums), dtype=bool))
+    first = np.full(len(sums), top + 1j * _QUARTER)
+    last = np.full(len(sums), bottom + 1j * _QUARTER)
+    return _closed(tally, first, last, np.ones(len(sums), dtype=bool))
 
 
 def _on_lines(tally: _Tally, above: Array) -> Array:
@@ -247,9 +254,7 @@ def _around(
     return _closed(tally, contour(everyone, begin), last, arrives)
 
 
-def _closed(
-    tally: _Tally, top: Complex, last: Complex, arrives: NDArray[np.bool_]
-) -> Array:
+def _closed(tally: _Tally, top: Complex, last: Complex, arrives: NDArray[np.bool_]) -> Array:
     """Add the arcs beyond the first and behind the last place t, where one power dominates.
 
     Contours that do not arrive at the inner circle end on the real axis, where the determinant is
@@ -290,7 +295,7 @@ def _divided(
     return _Steps(owner[starts], left, right)
 
 
-def _logarithm(value: Complex, slope: Complex, scale: Array) -> tuple[Complex, Complex]:
+def _logarithm(value: Complex, slope: Complex, scale: Array | Complex) -> tuple[Complex, Complex]:
     """Return the logarithm of a value, and its derivative."""
     with np.errstate(divide="ignore", invalid="ignore"):
         log = np.log(np.abs(value)) + scale + 1j * np.angle(value)

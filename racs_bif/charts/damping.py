@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from racs_bif.charts.counting import count_right
 from racs_bif.errors import ConvergenceError, ParameterError
@@ -20,6 +19,8 @@ from racs_bif.fractional.radii import annulus
 from racs_bif.fractional.roots import roots_right
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.charts.sums import Sums
     from racs_bif.fractional.exact import ExactModel
     from racs_bif.fractional.laws import Complex
@@ -63,7 +64,7 @@ def rightmost(model: ExactModel, sums: Sums, X: Array, P: Array) -> Rightmost:
     count = len(sums)
     root = np.full(count, np.nan, dtype=complex)
     sure = np.zeros(count, dtype=bool)
-    hopeless = ~np.isfinite(sums.coefficients).all(axis=0)
+    hopeless = np.asarray(~np.isfinite(sums.coefficients).all(axis=0))
     evaluations, place = np.zeros(count, dtype=np.int64), count // 2
     for _ in range(_MOST):
         rest = np.flatnonzero(~sure & ~hopeless)

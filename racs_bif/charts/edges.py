@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.charts.boundary import BETWEEN, Boundary, Seed
+from racs_bif.charts.boundary import Seed
+from racs_bif.charts.crossing import alike, between, intersections
 from racs_bif.charts.lattice import NOTHING, UNCOUNTED, Lattice, Node
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.exact_fold import solve_fold
@@ -18,13 +19,12 @@ from racs_bif.symbolic.paths import ParameterPath
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from racs_bif.charts.boundary import Boundary
     from racs_bif.charts.plane import Plane
     from racs_bif.symbolic.field import Array
 
 _HALVINGS = 12
 _BESIDE = 1e-4
-_SAME_STATE = 0.02
-_SAME_PLACE = 1e-6
 _BEYOND = 1e-6
 
 
@@ -131,9 +131,12 @@ class Edge:
         return self.a.count != NOTHING and self.b.count == NOTHING
 
     def follow(self, shares: Array) -> tuple[Array, Array]:
-        """Return equilibria (size, k) at shares of the edge, continued from its start, and reach."""
+        """Return equilibria (size, k) at shares of it, continued from its start, and how far."""
         k = len(shares)
-        X, begin = np.repeat(self.a.X[:, None], k, axis=1), np.repeat(self.start[:, None], k, axis=1)
+        X, begin = (
+            np.repeat(self.a.X[:, None], k, axis=1),
+            np.repeat(self.start[:, None], k, axis=1),
+        )
         end = begin + shares * (self.end - self.start)[:, None]
         return self.lattice.sheet.follow(X, begin, end)
 
@@ -150,7 +153,7 @@ class Edge:
         for k in range(len(self._crossings), len(boundaries)):
             boundary = boundaries[k]
             found = []
-            for share, place in _intersections(self.start, self.end, boundary):
+            for share, place in intersections(self.start, self.end, boundary):
                 if boundary.kind == "fold":
                     found.append(Crossing(share, k, 0))
                 elif self._ours(share, boundary, place):
@@ -304,62 +307,9 @@ class Edge:
         for boundary in boundaries:
             if boundary.kind != seed.kind:
                 continue
-            for share, place in _intersections(self.start, self.end, boundary):
+            for share, place in intersections(self.start, self.end, boundary):
                 near = np.hypot(*(self._place(share) - seed.place)) < 10.0 * _BESIDE
                 omega = between(boundary.omega, place)
                 if near and (seed.kind != "hopf" or abs(omega - seed.omega) < 0.02 * omega):
                     return True
         return False
-
-
-def alike(a: Array, b: Array, scale: Array) -> bool:
-    """Say whether two states are those of the same equilibrium, but for interpolation."""
-    return bool(np.all(np.abs(a - b) <= _SAME_STATE * scale))
-
-
-def between(rows: Array, at: float) -> Array:
-    """Return a row (or number) between two rows, `at` counted in rows."""
-    k = min(int(at), len(rows) - 2)
-    return np.asarray((1.0 - (at - k)) * rows[k] + (at - k) * rows[k + 1])
-
-
-def _intersections(start: Array, end: Array, boundary: Boundary) -> list[tuple[float, float]]:
-    """Return how far along a straight line a boundary crosses it, and where that is on it.
-
-    The latter is counted in the boundary's points.
-    """
-    line = boundary.line
-    if len(line) < 2:
-        return []
-    line, shift = _beyond_box(line, closed=boundary.closed)
-    q, s = line[:-1], np.diff(line, axis=0)
-    r = end - start
-    across = r[0] * s[:, 1] - r[1] * s[:, 0]
-    off = q - start
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = (off[:, 0] * s[:, 1] - off[:, 1] * s[:, 0]) / across
-        along = (off[:, 0] * r[1] - off[:, 1] * r[0]) / across
-    hit = (share >= 0.0) & (share <= 1.0) & (along >= 0.0) & (along < 1.0)
-    found = []
-    for k in np.flatnonzero(hit):
-        at = (int(k) - shift + float(along[k])) / BETWEEN
-        found.append((float(share[k]), min(max(at, 0.0), len(boundary.values) - 1.0)))
-    return found
-
-
-def _beyond_box(line: Array, *, closed: bool) -> tuple[Array, int]:
-    """Return a line that goes on a little beyond the box where it ends at it."""
-    if closed:
-        return line, 0
-    parts, shift = [line], 0
-    for place, inner in ((0, 1), (-1, -2)):
-        end = line[place]
-        if np.any((end <= 1e-9) | (end >= 1.0 - 1e-9)):
-            out = end - line[inner]
-            further = (end + _BEYOND * out / max(float(np.hypot(*out)), 1e-300))[None, :]
-            if place == 0:
-                parts.insert(0, further)
-                shift = 1
-            else:
-                parts.append(further)
-    return np.vstack(parts), shift

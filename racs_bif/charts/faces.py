@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
     from racs_bif.symbolic.field import Array
 
@@ -142,7 +144,7 @@ def _graph(lines: list[Array]) -> dict[Vertex, list[Vertex]]:
     for k in range(len(starts)):
         shares = _cuts(starts[k], ends[k], starts, ends)
         points = [_vertex(starts[k] + share * (ends[k] - starts[k])) for share in shares]
-        for a, b in zip(points[:-1], points[1:], strict=True):
+        for a, b in itertools.pairwise(points):
             if a != b:
                 neighbours[a].add(b)
                 neighbours[b].add(a)

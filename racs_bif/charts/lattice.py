@@ -205,28 +205,26 @@ class Lattice:
         self._scale = None
         at = np.array([self.place(key) for key in keys]).T
         X = X.copy()
-        for aside in (0.0, *_ASIDE):
-            lost = np.arange(len(keys)) if aside == 0.0 else np.flatnonzero(unstable < 0)
+        counts, static = self.counter(X, self.plane.vectors(at))
+        unstable = counts.unstable.copy()
+        for aside in _ASIDE:
+            lost = np.flatnonzero(unstable < 0)
             if not len(lost):
                 break
             # Beside a boundary that runs along the lattice its nodes can be counted again.
             moved = at[:, lost] + aside / self.side * np.where(at[:, lost] > 0.5, -1.0, 1.0)
             found, reached = self.sheet.follow(X[:, lost], at[:, lost], moved)
-            counts, margin = self.counter(found, self.plane.vectors(moved))
-            if aside == 0.0:
-                unstable, static = counts.unstable.copy(), margin
-                margins, omega = counts.margin, counts.omega
-                continue
-            good = (reached == 1.0) & (counts.unstable >= 0)
+            again = self.counter(found, self.plane.vectors(moved))[0].unstable
+            good = (reached == 1.0) & (again >= 0)
             at[:, lost[good]], X[:, lost[good]] = moved[:, good], found[:, good]
-            unstable[lost[good]] = counts.unstable[good]
+            unstable[lost[good]] = again[good]
         for k, key in enumerate(keys):
             self.nodes[key] = Node(
                 int(unstable[k]),
                 X[:, k].copy(),
-                float(margins[k]),
+                float(counts.margin[k]),
                 float(static[k]),
-                float(omega[k]),
+                float(counts.omega[k]),
                 at[:, k].copy(),
             )
 

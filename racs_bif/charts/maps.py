@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -201,4 +202,4 @@ def _equilibria(job: MapJob, places: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 def _spacing(places: Array) -> float:
     """Return about how far apart the known places are."""
-    return 1.0 / max(np.sqrt(places.shape[1]) - 1.0, 1.0)
+    return 1.0 / max(math.sqrt(places.shape[1]) - 1.0, 1.0)

@@ -6,13 +6,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from racs_bif.charts.boundary import BETWEEN, Boundary
-from racs_bif.charts.edges import alike
+from racs_bif.charts.crossing import alike
 from racs_bif.charts.lattice import NOTHING, Lattice
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.symbolic.field import Array
 
 _NEAREST = 3
@@ -92,4 +93,6 @@ def away(line: Array, places: Array) -> Array:
     a, d = line[:-1], np.diff(line, axis=0)
     length = np.maximum((d**2).sum(axis=1), 1e-300)
     share = np.clip(((places[:, None] - a) * d).sum(axis=2) / length, 0.0, 1.0)
-    return np.asarray(np.hypot(*np.moveaxis(places[:, None] - a - share[..., None] * d, 2, 0)).min(axis=1))
+    return np.asarray(
+        np.hypot(*np.moveaxis(places[:, None] - a - share[..., None] * d, 2, 0)).min(axis=1)
+    )

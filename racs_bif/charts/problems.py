@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.equilibria.branch_point_curve import BranchPointCurve
-from racs_bif.equilibria.curve_problem import CurveProblem
+from racs_bif.equilibria.curve_problem import CurveProblem, Matrix
 from racs_bif.equilibria.exact_fold_curve import ExactFoldCurve
 from racs_bif.equilibria.exact_hopf_curve import ExactHopfCurve
 
@@ -33,12 +33,12 @@ class _Boundary(CurveProblem):
     def residual(self, z: Array) -> Array:
         """Return the residual, and count it."""
         self.evaluations += 1
-        return super().residual(z)
+        return super().residual(z)  # type: ignore[safe-super] # that of the curve
 
     def jacobian(self, z: Array) -> Array:
         """Return the Jacobian, and count it."""
         self.evaluations += DERIVATIVES
-        return super().jacobian(z)
+        return super().jacobian(z)  # type: ignore[safe-super] # that of the curve
 
     def spectrum(self, z: Array) -> Spectrum:
         """Return nothing: what else is unstable is counted in the regions."""
@@ -100,5 +100,5 @@ class StaticBoundary(_Boundary, BranchPointCurve):
     name = "static boundary"
 
 
-def _unit(vector: Array) -> Array:
+def _unit(vector: Matrix) -> Matrix:
     return np.asarray(vector / np.linalg.norm(vector)).reshape(-1, 1)

@@ -65,7 +65,9 @@ def regions(lattice: Lattice, boundaries: list[Boundary]) -> tuple[Region, ...]:
         inside = np.flatnonzero(face.contains(places))
         place = _middle(face)
         if len(inside):
-            room = np.min([away(np.vstack([loop, loop[:1]]), places[inside]) for loop in face.loops], axis=0)
+            room = np.min(
+                [away(np.vstack([loop, loop[:1]]), places[inside]) for loop in face.loops], axis=0
+            )
             count = int(counts[inside[int(np.argmax(room))]])
         else:
             count = _counted(lattice, place)
@@ -83,7 +85,9 @@ def _middle(face: Face) -> Array:
         places = np.column_stack([x.ravel(), y.ravel()])
         places = places[face.contains(places)]
         if len(places):
-            room = np.min([away(np.vstack([loop, loop[:1]]), places) for loop in face.loops], axis=0)
+            room = np.min(
+                [away(np.vstack([loop, loop[:1]]), places) for loop in face.loops], axis=0
+            )
             return np.asarray(places[int(np.argmax(room))])
     return np.asarray(face.outline.mean(axis=0))
 

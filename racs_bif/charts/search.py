@@ -142,9 +142,7 @@ def _trace_all(
             new = True
         if not new:
             break
-    found.unexplained = [
-        key for key in _edges(found) if not edges[key].explained(found.boundaries)
-    ]
+    found.unexplained = [key for key in _edges(found) if not edges[key].explained(found.boundaries)]
 
 
 def _trace_folds(
@@ -194,7 +192,9 @@ def _hides(found: Search, cell: Cell) -> bool:
     i, j, h = cell
     lattice, nodes = found.lattice, found.lattice.nodes
     corners = ((i, j), (i + h, j), (i + h, j + h), (i, j + h))
-    sides = {(min(a, b), max(a, b)) for a, b in zip(corners, (*corners[1:], corners[0]), strict=True)}
+    sides = {
+        (min(a, b), max(a, b)) for a, b in zip(corners, (*corners[1:], corners[0]), strict=True)
+    }
     if any(piece in sides for piece in found.unexplained):
         return True
     counts = {nodes[key].count for key in corners}
@@ -204,8 +204,12 @@ def _hides(found: Search, cell: Cell) -> bool:
         lowest = min(abs(getattr(nodes[key], name)) for key in corners)
         steepest = 0.0
         for key in corners:
-            for other in ((key[0] + h, key[1]), (key[0] - h, key[1]), (key[0], key[1] + h),
-                          (key[0], key[1] - h)):
+            for other in (
+                (key[0] + h, key[1]),
+                (key[0] - h, key[1]),
+                (key[0], key[1] + h),
+                (key[0], key[1] - h),
+            ):
                 if lattice.known(other):
                     change = abs(getattr(nodes[key], name)) - abs(getattr(nodes[other], name))
                     steepest = max(steepest, abs(change))
@@ -221,8 +225,7 @@ def _near(found: Search, cell: Cell) -> bool:
     low = np.array([i, j]) / found.lattice.side - side
     high = low + 3.0 * side
     return any(
-        bool(np.any(np.all((b.line >= low) & (b.line <= high), axis=1)))
-        for b in found.boundaries
+        bool(np.any(np.all((b.line >= low) & (b.line <= high), axis=1))) for b in found.boundaries
     )
 
 
@@ -236,6 +239,12 @@ def _divide(found: Search, cells: list[Cell]) -> None:
         keys += [(i + k, j), (i, j + k), (i + k, j + k), (i + h, j + k), (i + k, j + h)]
         kept += [(i, j, k), (i + k, j, k), (i, j + k, k), (i + k, j + k, k)]
     for k in sorted(half, reverse=True):
-        found.lattice.add([key for key in keys if key[0] % k == 0 and key[1] % k == 0
-                           and (key[0] % (2 * k) or key[1] % (2 * k))], k)
+        found.lattice.add(
+            [
+                key
+                for key in keys
+                if key[0] % k == 0 and key[1] % k == 0 and (key[0] % (2 * k) or key[1] % (2 * k))
+            ],
+            k,
+        )
     found.cells = sorted(kept)

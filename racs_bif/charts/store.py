@@ -91,7 +91,7 @@ class TileStore:
         part = path.with_name(f".{path.name}.part")
         try:
             with part.open("wb") as file:
-                np.savez(file, **tile)
+                np.savez(file, allow_pickle=False, **tile)
             part.replace(path)
         except OSError as error:
             part.unlink(missing_ok=True)

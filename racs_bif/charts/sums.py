@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from racs_bif.charts.sheet import Laws
     from racs_bif.fractional.laws import Complex
     from racs_bif.symbolic.field import Array
@@ -41,9 +43,9 @@ class Sums:
 
     def __len__(self) -> int:
         """Return N."""
-        return self.coefficients.shape[1]
+        return int(self.coefficients.shape[1])
 
-    def take(self, which: Array) -> Sums:
+    def take(self, which: NDArray[np.intp]) -> Sums:
         """Return some of the sums, by their places."""
         wide = self.exponents.shape[1] > 1
         at = self.exponents[:, which] if wide else self.exponents
@@ -120,7 +122,7 @@ class Sums:
         value, slope = parts[0] + 1j * parts[1], parts[2] + 1j * parts[3]
         return value, slope, np.log(total) + top[:, None]
 
-    def leading(self) -> tuple[Array, Array, Array, Array]:
+    def leading(self) -> tuple[Array, NDArray[np.intp], Array, NDArray[np.intp]]:
         """Return exponents (N,) and places (N,) of the highest and of the lowest power."""
         e = np.broadcast_to(self.exponents, self.coefficients.shape)
         there = self.coefficients != 0.0
@@ -145,8 +147,9 @@ class Sums:
         outer = np.where(there & (e < e_high), over, -np.inf).max(axis=0)
         inner = np.where(there & (e > e_low), under, np.inf).min(axis=0)
         # A single power has no root at all.
-        inner, outer = np.where(np.isfinite(inner), inner, -1.0), np.where(
-            np.isfinite(outer), outer, 1.0
+        inner, outer = (
+            np.where(np.isfinite(inner), inner, -1.0),
+            np.where(np.isfinite(outer), outer, 1.0),
         )
         return np.minimum(inner, outer - 1.0), outer
 
@@ -167,7 +170,9 @@ def expand(core: Array, laws: tuple[Laws, ...]) -> Sums:
     exponents: list[Array] = []
     minors, bounds = _minors(core, ny)
     for elements in itertools.product((0, 1), repeat=ne):
-        rows = [law.numerator if on else law.denominator for law, on in zip(laws, elements, strict=True)]
+        rows = [
+            law.numerator if on else law.denominator for law, on in zip(laws, elements, strict=True)
+        ]
         for k in range(ny + 1):
             key = (k, elements)
             minor = np.where(np.abs(minors[key]) > _NOISE * bounds[key], minors[key], 0.0)
@@ -231,5 +236,5 @@ def _merged(coefficients: Array, exponents: Array) -> Sums:
     return Sums(np.array(kept_c), at[:, :1] if same.all() else at)
 
 
-def _pick(rows: Array, places: Array) -> Array:
+def _pick(rows: Array, places: NDArray[np.intp]) -> Array:
     return np.asarray(np.take_along_axis(rows, places[None, :], axis=0)[0])

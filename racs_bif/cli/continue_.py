@@ -37,7 +37,7 @@ DESCRIPTION: Final = (
 )
 FILES: Final = ("branches.nc", "diagram.png", "diagram.svg", "summary.json")
 DEFAULT_OUT: Final = "racs_bif_out"
-METHODS: Final = ("shooting", "harmonic-balance", "none")
+METHODS: Final = ("shooting", "collocation", "harmonic-balance", "none")
 
 
 def configure(parser: Parser) -> None:
@@ -59,8 +59,8 @@ def configure(parser: Parser) -> None:
         type=choice(*METHODS),
         default=METHODS[0],
         metavar="METHOD",
-        help="how periodic orbits are followed: shooting (default), harmonic-balance on the exact "
-        "operator, or none to leave them out",
+        help="how periodic orbits are followed: shooting (default), collocation, "
+        "harmonic-balance on the exact operator, or none to leave them out",
     )
     parser.add_argument(
         "--probes",

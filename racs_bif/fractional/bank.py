@@ -63,7 +63,7 @@ class Bank:
         if not self.filters:
             return values
         if self.own < LARGE:
-            return self.left @ values
+            return np.asarray(self.left @ values)
         return np.concatenate((values[: self.own], self.B @ values[self.own :]))
 
     def gather(self, x: NDArray[Any]) -> NDArray[Any]:
@@ -71,7 +71,7 @@ class Bank:
         if not self.filters:
             return x
         if self.own < LARGE:
-            return self.right @ x
+            return np.asarray(self.right @ x)
         return np.concatenate((x[: self.own], self.C @ x[self.own :]))
 
     def around(self, core: Any) -> Any:  # noqa: ANN401 - scipy has no types

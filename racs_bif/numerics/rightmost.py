@@ -31,6 +31,7 @@ Complex = NDArray[np.complex128]
 
 _COUNT = 24
 _MOST = 16
+_WIDE, _HIGH = 64, 1024
 _CELLS = 32
 _NEAR = 1e-4
 _ASIDE = 0.1
@@ -92,7 +93,7 @@ def rightmost(matrix: Matrix) -> Rightmost:
     right, top = _rectangle(matrix)
     for count in (_COUNT, 2 * _COUNT):
         disks = [_disk(matrix, 0.0, count)]
-        cells = _cells(right, top)
+        cells = _cells(right, top, disks[0].radius)
         while (left := _uncovered(disks, cells)) is not None and len(disks) < _MOST:
             ahead = min(left.imag + 0.5 * disks[-1].radius, max(top, left.imag))
             disks.append(_disk(matrix, complex(left.real, ahead), count))
@@ -132,11 +133,14 @@ def _rectangle(matrix: Matrix) -> tuple[float, float]:
     return max(float(right.max()), 0.0), float(abs(skew).sum(axis=1).max())
 
 
-def _cells(right: float, top: float) -> tuple[Complex, float]:
+def _cells(right: float, top: float, radius: float) -> tuple[NDArray[Any], float]:
     """Return the centres of the cells of a rectangle above the real axis, and their reach."""
-    steps = (np.arange(_CELLS) + 0.5) / _CELLS
-    x, y = np.meshgrid(right * steps, top * steps)
-    return (x + 1j * y).ravel(), math.hypot(right, top) / (2 * _CELLS)
+    size = max(radius / 8.0, right / _WIDE, top / _HIGH)
+    columns, rows = (max(math.ceil(length / size), 1) for length in (right, top))
+    x = right * (np.arange(columns) + 0.5) / columns
+    y = top * (np.arange(rows) + 0.5) / rows
+    reach = 0.5 * math.hypot(right / columns, top / rows)
+    return (x + 1j * y[:, None]).ravel(), reach
 
 
 def _uncovered(disks: Sequence[_Disk], cells: tuple[NDArray[Any], float]) -> complex | None:

@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from matplotlib.text import Text
     from matplotlib.transforms import Bbox
 
-    from racs_bif.results.chart import Chart, ChartBoundary, ChartRegion, ChartSlices, Reals
+    from racs_bif.results.chart import Chart, ChartBoundary, ChartRegion, Reals
+    from racs_bif.results.chart_slices import ChartSlices
 
 COLOURS: Final = "cividis"
-"""Uniform in lightness: it reads the same in grey and with any colour vision (J. R. Nunez et al., PLoS
-ONE 13 (2018) e0199239)."""
+"""Uniform in lightness: the same in grey and with any colour vision (J. R. Nunez, C. R. Anderton,
+R. S. Renslow, PLoS ONE 13 (2018) e0199239)."""
 SHADES: Final = ("#ffffff", "#e4e4e4", "#c6c6c6", "#a9a9a9", "#8d8d8d")
 """Fillings for 0, 1, 2, 3 and more unstable roots."""
 _SIZE: Final = (COLUMN, 0.92 * COLUMN)
@@ -31,6 +32,8 @@ _HATCHES: Final = {-2: "////", -1: "xxxx"}
 _LINES: Final = {"static": "static loss", "fold": "fold: the equilibrium ends"}
 _STYLES: Final = {"static": (0, (1.0, 1.0)), "fold": (0, (5.0, 1.5))}
 _ROOM: Final = 1.1
+_CLEAR: Final = 0.06
+_HEIGHTS: Final = (0.0, 0.12, -0.12, 0.2, -0.2)
 
 
 @dataclass(frozen=True)
@@ -208,7 +211,7 @@ def _boundary(boundary: ChartBoundary, ax: Axes, scale: _Scale | None) -> Scalar
     from matplotlib.collections import LineCollection
 
     x, y = boundary.line.T
-    casing = {"solid_capstyle": "round", "zorder": 3.0}
+    casing: dict[str, Any] = {"solid_capstyle": "round", "zorder": 3.0}
     if boundary.kind != "hopf" or scale is None:
         look = _STYLES.get(boundary.kind, "-")
         ax.plot(x, y, color="white", linewidth=2.2, **casing)
@@ -219,9 +222,7 @@ def _boundary(boundary: ChartBoundary, ax: Axes, scale: _Scale | None) -> Scalar
     pieces = np.stack([boundary.line[:-1], boundary.line[1:]], axis=1)
     at = np.linspace(0.0, len(boundary) - 1.0, len(boundary.line))
     omega = np.interp(at, np.arange(len(boundary)), boundary.omega)
-    lines = LineCollection(
-        list(pieces), cmap=COLOURS, linewidths=1.6, zorder=3.1, capstyle="round"
-    )
+    lines = LineCollection(list(pieces), cmap=COLOURS, linewidths=1.6, zorder=3.1, capstyle="round")
     lines.set_array(0.5 * (omega[:-1] + omega[1:]))
     lines.set_clim(scale.low, scale.high)
     ax.add_collection(lines, autolim=False)
@@ -240,8 +241,15 @@ def _boundary(boundary: ChartBoundary, ax: Axes, scale: _Scale | None) -> Scalar
         if point.label == "GH":
             place = list(point.parameters.values())
             ax.plot(
-                place[:1], place[1:], marker="D", markersize=4.0, color=BLACK,
-                markeredgecolor="white", markeredgewidth=0.5, linestyle="None", zorder=4,
+                place[:1],
+                place[1:],
+                marker="D",
+                markersize=4.0,
+                color=BLACK,
+                markeredgecolor="white",
+                markeredgewidth=0.5,
+                linestyle="None",
+                zorder=4,
             )
     return lines
 
@@ -289,23 +297,41 @@ def _legend_entries(ax: Axes) -> tuple[list[Any], list[str]]:
 
 def _inside(chart: Chart, region: ChartRegion, text: str, ax: Axes) -> Text | None:
     """Write a text well inside a region; None, and nothing written, where it does not fit."""
-    x, y = region.place
-    plain = chart.map is None or chart.map.quantity != "damping" or region.unstable < 0
-    written = ax.text(
-        float(x), float(y), text, ha="center", va="center", fontsize="small", zorder=6,
-        bbox=None if plain and region.unstable >= 0 else {
-            "facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0
-        },
-    )
-    box = written.get_window_extent()
-    wide = 0.5 * _ROOM * np.array([box.width, box.height])
-    middle = np.array([0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1)])
-    corners = middle + wide * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [0, 1]])
-    places = ax.transData.inverted().transform(corners)
-    if _contains(chart, region, places):
-        return written
-    written.remove()
+    damping = chart.map is not None and chart.map.quantity == "damping"
+    box = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0}
+    boxed = damping or region.unstable < 0
+    (x, y), height = region.place, chart.spans[1][1] - chart.spans[1][0]
+    for up in _HEIGHTS:
+        written = ax.text(
+            float(x),
+            float(y) + up * height,
+            text,
+            ha="center",
+            va="center",
+            fontsize="small",
+            zorder=6,
+            bbox=box if boxed else None,
+        )
+        extent = written.get_window_extent()
+        if _fits(chart, region, extent, ax):
+            return written
+        written.remove()
     return None
+
+
+def _fits(chart: Chart, region: ChartRegion, extent: Bbox, ax: Axes) -> bool:
+    """Say whether a text is in a region, and not on the model's own values."""
+    middle = np.array([0.5 * (extent.x0 + extent.x1), 0.5 * (extent.y0 + extent.y1)])
+    wide = 0.5 * _ROOM * np.array([extent.width, extent.height])
+    around = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [0, -1], [0, 1]])
+    places = ax.transData.inverted().transform(middle + wide * around)
+    if not _contains(chart, region, places):
+        return False
+    if chart.nominal is None:
+        return True
+    spot = ax.transData.transform(chart.nominal)
+    clear = 0.5 * np.array([extent.width, extent.height]) + _CLEAR * ax.figure.dpi
+    return bool(np.any(np.abs(spot - middle) > clear))
 
 
 def _contains(chart: Chart, region: ChartRegion, places: Reals) -> bool:

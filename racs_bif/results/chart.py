@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 
 from racs_bif.charts.faces import Face
 from racs_bif.errors import UsageError
-from racs_bif.results.provenance import SystemInfo
 from racs_bif.results.same import same
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     import pandas as pd
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
+    from racs_bif.results.provenance import SystemInfo
 
 Reals = NDArray[np.float64]
 Span = tuple[float, float]
@@ -314,49 +312,3 @@ def describe_count(unstable: int) -> str:
     """
     words = {0: "stable", -1: "unknown", -2: "no equilibrium"}
     return words.get(unstable, f"{unstable} unstable")
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ChartSlices:
-    """Charts of the same plane at several values of a third parameter.
-
-    Parameters
-    ----------
-    parameter : str
-        The third parameter.
-    charts : tuple of Chart
-        One for each value, which is among the parameters of the chart's system.
-    """
-
-    parameter: str
-    charts: tuple[Chart, ...]
-
-    def __len__(self) -> int:
-        """Return the number of slices."""
-        return len(self.charts)
-
-    def __iter__(self) -> Iterator[Chart]:
-        """Iterate over the charts."""
-        return iter(self.charts)
-
-    def __eq__(self, other: object) -> bool:
-        """Compare bit by bit."""
-        return same(self, other) if isinstance(other, ChartSlices) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """Values of the third parameter, SI."""
-        return tuple(chart.system.parameters[self.parameter] for chart in self.charts)
-
-    @property
-    def early(self) -> bool:
-        """Whether something that was looked for may be missing in one of them."""
-        return any(chart.early for chart in self.charts)
-
-    def plot(self) -> Figure:
-        """Draw all on one figure; see `racs_bif.plots.chart.picture_slices`."""
-        from racs_bif.plots.chart import picture_slices
-
-        return picture_slices(self)

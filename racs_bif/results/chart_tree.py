@@ -12,8 +12,8 @@ from racs_bif.results.chart import (
     ChartBoundary,
     ChartMap,
     ChartRegion,
-    ChartSlices,
 )
+from racs_bif.results.chart_slices import ChartSlices
 from racs_bif.results.decode import decode_system
 from racs_bif.results.encode import encode_system
 from racs_bif.results.tree import Attribute, Node, Variable, numbers, real_array, words

@@ -17,7 +17,8 @@ from pathlib import Path
 from racs_bif.errors import FileError
 from racs_bif.results.atomic import write_atomically
 from racs_bif.results.branch import Branch
-from racs_bif.results.chart import Chart, ChartSlices
+from racs_bif.results.chart import Chart
+from racs_bif.results.chart_slices import ChartSlices
 from racs_bif.results.chart_tree import CHART, SLICES, decode_charts, encode_charts
 from racs_bif.results.decode import decode_branch
 from racs_bif.results.diagram import Diagram

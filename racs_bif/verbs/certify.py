@@ -13,6 +13,8 @@ from racs_bif.fractional.proofs import OMEGA, prove_fold, prove_hopf
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.branch import Branch
 from racs_bif.results.certificate import Bounds, Certificate, Check
+from racs_bif.results.chart import Chart
+from racs_bif.results.chart_slices import ChartSlices
 from racs_bif.results.files import load
 from racs_bif.results.history import TimeHistory
 from racs_bif.verbs.completeness import complete
@@ -119,7 +121,7 @@ def _branches(result: Branch | Diagram | Sequence[Branch] | str | Path) -> list[
     found = load(result) if isinstance(result, str | Path) else result
     if isinstance(found, Branch):
         return [found]
-    return [] if isinstance(found, TimeHistory) else list(found)
+    return [] if isinstance(found, TimeHistory | Chart | ChartSlices) else list(found)
 
 
 def _certified(subject: Subject, strength: str, tolerance: float) -> Iterator[Check]:

@@ -23,8 +23,8 @@ from racs_bif.results.chart import (
     ChartBoundary,
     ChartMap,
     ChartRegion,
-    ChartSlices,
 )
+from racs_bif.results.chart_slices import ChartSlices
 from racs_bif.results.provenance import describe
 from racs_bif.shelf.load import system_of
 from racs_bif.verbs.equilibria import check_span

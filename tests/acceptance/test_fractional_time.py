@@ -116,3 +116,17 @@ def test_the_limit_cycle_of_a_realisation_with_a_wide_band():
     low, high = done.extremes("delta_c", after=10.0)
     assert high - low == pytest.approx(RANGE, rel=3e-4)
     assert done.period("delta_c", after=10.0) == pytest.approx(PERIOD, rel=1e-5)
+
+
+def test_bagley_and_torvik_to_nine_digits(torvik):
+    done = rb.simulate(
+        torvik,
+        20.0,
+        method="bdf2",
+        inputs={"f": {0.0: 8.0, 1.0: 0.0}},
+        step=1.0 / 1024.0,
+        extrapolate=True,
+    )
+    at = [np.flatnonzero(done.times == t)[0] for t in (1.0, 5.0, 10.0, 20.0)]
+    exact = np.array([2.952583880, 2.943935664, -2.848380869, -1.484329464])
+    assert done.column("y")[at] == pytest.approx(exact, abs=2.5e-9)

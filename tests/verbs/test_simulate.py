@@ -62,7 +62,7 @@ def test_the_realised_operator(vehicle):
     done = rb.simulate(vehicle, 1.0, operator="realised", initial={"delta_c": 0.01})
     assert len(done) == 2001
     assert done.method == "lsoda"
-    assert done.system.realisation.states == 8
+    assert done.system.realisation.states == 14
     assert np.isnan(done.step)
     assert np.isnan(done.order)
     assert 0.0 < done.errors["delta_c"] < 1e-6
@@ -141,8 +141,9 @@ def test_what_is_refused_in_one_line(vehicle, options, text):
 @pytest.mark.parametrize(
     ("law", "text"),
     [
-        ("s**(-2.5)", r"spans s\*\*2.5"),
-        ("1/(1 + s**0.5 + s**2.3)", r"spans s\*\*2.3"),
+        ("s**(-2.5)", r"has the order 2.5; fractional orders lie between -2 and 2"),
+        ("1/(1 + s**0.5 + s**2.3)", r"has the order 2.3"),
+        ("s**(-1.5)/(1 + s**0.9)", r"has the order 2.4"),
         ("s**1.5", r"grows like s\*\*1.5; feed it the derivative"),
         ("(1 + s**1.9)/(1 + s**0.3)", r"grows like s\*\*1.6"),
     ],
