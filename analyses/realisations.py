@@ -103,9 +103,7 @@ def run(
     return path
 
 
-def table(
-    vehicles: int, seed: int, progress: Callable[[float], None] | None = None
-) -> list[Row]:
+def table(vehicles: int, seed: int, progress: Callable[[float], None] | None = None) -> list[Row]:
     """Return the rows, a realisation each."""
     wanted = [choose_realisation(name, BAND) for name in REALISATIONS]
     errors: dict[str, list[float]] = {name: [] for name in REALISATIONS}

@@ -1,7 +1,8 @@
 """User CPU time of the main job, cold and warm.
 
-Run ``python benchmarks/first_light.py``. Every row is a fresh process on one BLAS thread; the numbers
-are user CPU seconds as the operating system counts them, so a busy machine disturbs them little.
+Run ``python benchmarks/first_light.py``. Every row is a fresh process on one BLAS thread; the
+numbers are user CPU seconds as the operating system counts them, so that a busy machine disturbs
+them less than a clock would be.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ this process on one BLAS thread, of three runs the fastest. AUTO-07p is not run 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import racs_bif as rb
 from racs_bif.shelf.load import load_model
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from racs_bif.results.branch import Branch
     from racs_bif.results.special import SpecialPoint
 
-MODELS = (
+MODELS: tuple[tuple[str, dict[str, Any]], ...] = (
     ("as it is by default", {}),
     ("Oustaloup, 2 x 12 sections", {"realisation": "oustaloup", "order": 12, "band": (1e-2, 1e3)}),
 )

@@ -154,9 +154,11 @@ C_S = DerivedParameter(
     valid=POSITIVE,
 )
 BAND = (0.1, 50.0)
-"""Shimmy is near 10 rad/s, and its harmonics matter to 50. With 8 states on 1.5 to 50 rad/s the Hopf
-speed and the orbits to 21 m/s are good to 3e-4 as well, but beyond it the period climbs to 29 s
-(0.2 rad/s), where such a narrow band shows folds and period doublings that the exact operator lacks.
+"""Shimmy is near 10 rad/s, and its harmonics matter to 50.
+
+With 8 states on 1.5 to 50 rad/s the Hopf speed and the orbits to 21 m/s are good to 3e-4 as well.
+But beyond it the period climbs to 29 s (0.2 rad/s), where such a narrow band shows folds and period
+doublings that the exact operator does not have.
 """
 UNITS = {
     **{"v": "m/s", "w": "rad/s", "delta_c": "rad", "ddelta_c": "rad/s", "delta_z": "rad"},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -38,7 +39,11 @@ class Spans(argparse.Action):
     """Collect ``--span NAME LOW HIGH`` by name."""
 
     def __call__(
-        self, parser: argparse.ArgumentParser, namespace: Namespace, values: Any, *_: Any
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: Namespace,
+        values: Any,  # noqa: ANN401 - as argparse has it
+        *_: object,
     ) -> None:
         """Add a span."""
         try:
@@ -70,7 +75,7 @@ def configure(parser: Parser) -> None:
     parser.add_argument(
         "--operator",
         type=choice("exact", "realised"),
-        help="follow it on the exact equation (default with fractional elements) or the realisation",
+        help="exact equation (default with fractional elements) or realisation",
     )
     add_model_options(parser)
     add_realisation_options(parser)
@@ -202,14 +207,15 @@ def _tell(curve: Branch, arguments: Namespace) -> None:
     for axis, name in enumerate((a, b)):
         column = curve.values[:, axis]
         inner = column[1:-1]
-        for extreme, k in (("least", int(inner.argmin()) + 1), ("largest", int(inner.argmax()) + 1)):
+        extremes = {"least": int(inner.argmin()) + 1, "largest": int(inner.argmax()) + 1}
+        for extreme, k in extremes.items():
             if min(column[0], column[-1]) <= column[k] <= max(column[0], column[-1]):
                 continue
             rows.append((f"{extreme} {name}", k, "among the points"))
     rows += [(p.name, p.index, p.title) for p in curve.special if p.label not in {"EP", "MX"}]
     for name, k, told in rows:
         numbers = [*curve.values[k], *(_at(curve, m, k) for m in ("omega", "l1"))]
-        shown = ["-" if n != n else f"{n:.7g}" for n in numbers]
+        shown = ["-" if math.isnan(n) else f"{n:.7g}" for n in numbers]
         table.add_row(name, *shown, told)
     screen.print(table)
     for note in curve.system.notes:

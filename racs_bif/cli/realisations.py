@@ -29,7 +29,11 @@ class _Along(argparse.Action):
     """Read a parameter's name and two numbers."""
 
     def __call__(
-        self, parser: argparse.ArgumentParser, namespace: Namespace, values: Any, *_: Any
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: Namespace,
+        values: Any,  # noqa: ANN401 - as argparse has it
+        *_: object,
     ) -> None:
         """Store (name, low, high)."""
         try:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 HELP: Final = "run an analysis"
 DESCRIPTION: Final = (
-    "Run an analysis by name, or the file of one; see 'racs-bif analyses'. What it writes goes into "
-    "the folder of --out."
+    "Run an analysis by name, or the file of one; see 'racs-bif analyses'. What it writes goes "
+    "into the folder of --out."
 )
 
 

@@ -163,8 +163,8 @@ def _check_orders(name: str, *sums: PowerSum) -> None:
         for order in power_sum.exponents:
             if abs(order) > 2.0 and order != round(order):
                 msg = (
-                    f"the law of '{name}' has the order {order:g}; fractional orders lie between -2 and 2: "
-                    "use derivatives of its input, or two elements"
+                    f"the law of '{name}' has the order {order:g}; fractional orders lie between "
+                    "-2 and 2: use derivatives of its input, or two elements"
                 )
                 raise ParameterError(msg)
 

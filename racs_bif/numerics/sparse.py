@@ -21,10 +21,11 @@ Matrix = Any
 """A numpy array, or a scipy.sparse array in compressed columns."""
 
 LARGE = 300
-"""From this size on sparse matrices are faster: so many unknowns, eigenvalues and all.
+"""From this size on matrices are sparse if they can be.
 
-Measured on a one-dimensional Brusselator: one Newton step, its spectrum and its test functions take
-as long either way at 200 unknowns, and a fifth of the time at 400.
+Measured on a one-dimensional Brusselator, four Newton corrections, a spectrum and a test function:
+24 ms at any size, against 31 ms with full matrices of 200 rows, 54 of 300 and 145 of 400. Below it
+the whole spectrum is worth more than the time.
 """
 _FULL = 0.05
 _SINGULAR = 1e-17

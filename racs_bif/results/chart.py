@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Reals = NDArray[np.float64]
 Span = tuple[float, float]
+_EDGE = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -274,13 +275,28 @@ class Chart:
         if not bool(np.all((place >= low) & (place <= high))):
             msg = f"{first} = {values[first]:g}, {second} = {values[second]:g} is outside the chart"
             raise UsageError(msg)
-        edge = 1e-9
-        unit = np.clip((place - low) / (high - low), edge, 1.0 - edge)
-        for region in reversed(self.regions):
+        return int(self.unstable_on(place)[0])
+
+    def unstable_on(self, values: Reals) -> NDArray[np.int64]:
+        """Return the numbers of unstable roots (N,) at places of the chart, from its regions.
+
+        Parameters
+        ----------
+        values : array (N, 2)
+            Both parameters, SI, within the chart.
+
+        Returns
+        -------
+        int array (N,)
+            As of `ChartRegion`; -1 exactly on a boundary.
+        """
+        low, high = np.array(self.spans).T
+        unit = np.clip((values - low) / (high - low), _EDGE, 1.0 - _EDGE)
+        found = np.full(len(unit), -1, dtype=np.int64)
+        for region in self.regions:
             outline, *holes = ((loop - low) / (high - low) for loop in region.loops)
-            if Face(outline, tuple(holes)).contains(unit)[0]:
-                return region.unstable
-        return -1
+            found[Face(outline, tuple(holes)).contains(unit)] = region.unstable
+        return found
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the points of all boundaries as a table, a point a row."""

@@ -107,7 +107,8 @@ def continue_orbits(
     if not isinstance(origin, Origin):
         msg = f"{hopf.name} was loaded from a file; continue the equilibria again to start from it"
         raise UsageError(msg)
-    system, raw, path = origin.system, origin.raw, origin.problem.path
+    system, raw = origin.system, origin.raw
+    path = origin.problem.path  # type: ignore[attr-defined] # as all of ours have
     low, high = check_span(system, path.names[0], span or origin.span)
     if not low <= raw.z[-1] <= high:
         msg = f"{hopf.name} at {raw.z[-1]:g} is outside the span {low:g} to {high:g}; widen it"
@@ -176,10 +177,11 @@ def _beyond_band(origin: Origin, found: Trace, method: str) -> str:
     ]
     if not out:
         return ""
+    name = hopf_parameter(origin)
     return (
-        f" Between {hopf_parameter(origin)} = {min(out):.6g} and {max(out):.6g} the frequency of the "
-        f"orbits is outside the realisation's band, {low:g} to {high:g} rad/s: do not trust them "
-        "there; use --orbits harmonic-balance, or a wider --band."
+        f" Between {name} = {min(out):.6g} and {max(out):.6g} the frequency of the orbits is outside "
+        f"the realisation's band, {low:g} to {high:g} rad/s: do not trust them there; use "
+        "--orbits harmonic-balance, or a wider --band."
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+
 from racs_bif.cli.main import main
 from racs_bif.shelf import find, load_module
 

@@ -15,6 +15,7 @@ from racs_bif.continuation.settings import StepSettings
 from racs_bif.equilibria.problem import EquilibriumProblem
 from racs_bif.numerics import sparse
 from racs_bif.shelf.load import system_of
+from racs_bif.verbs.equilibria import equilibrium_problem, follow, starting_point
 
 FEW = StepSettings(initial=0.1, maximum=0.2)
 HOPF = {"A": 2.0, "B": 5.45, "D": 0.008, "E": 0.004, "L": 0.4}
@@ -208,11 +209,16 @@ def test_a_fractional_element_among_many_states(dense):
 
 
 def test_a_search_that_was_not_complete_is_reported():
-    """Two hundred oscillators with hardly any damping: too many eigenvalues near the axis."""
-    k = range(1, 201)
-    equations = {f"x{i}": f"v{i}" for i in k} | {f"v{i}": f"q - {i}**2*x{i} - v{i}/10" for i in k}
+    """Four hundred oscillators with hardly any damping: too many eigenvalues near the axis."""
+    k = range(1, 401)
+    equations = {f"x{i}": f"v{i}" for i in k}
+    equations |= {f"v{i}": f"q - {i}**2*x{i} - v{i}/10" for i in k}
     system = system_of(rb.model_from_strings("rods", equations, parameters={"q": 0.0}))
-    wide = StepSettings(initial=1.0, maximum=1.0)
-    branch = rb.continue_equilibria(system, "q", (-1.0, 1.0), settings=wide)
-    assert "up to an imaginary part of" in branch.stopped
-    assert not branch.unstable.any()
+    problem = equilibrium_problem(system, "q")
+    assert problem.unstable(problem.spectrum(np.zeros(801))) == 0
+    assert 20.0 < problem.height < 400.0
+    # What follows has few states, but the problem remembers.
+    problem.field, problem.path = (one := system_of(brusselator(2, HOPF))).field, one.path("L")
+    start = starting_point(one, "L", (0.4, 0.6))
+    found = follow(problem, start, (0.4, 0.6), FEW)
+    assert f"up to an imaginary part of {problem.height:.4g} only" in found.message

@@ -188,9 +188,7 @@ def test_polish_and_exact_point_are_inverse(vehicle):
 
 def test_an_integrator_keeps_its_output_at_rest(system_of):
     """x' = w - x, w = s^-q (1 - x): at rest x = 1 and w = 1, held by the integrator's state."""
-    system = system_of(
-        {"x": "w - x"}, elements=[("w", "1 - x", "1/s**q")], parameters={"q": 0.7}
-    )
+    system = system_of({"x": "w - x"}, elements=[("w", "1 - x", "1/s**q")], parameters={"q": 0.7})
     x = system.equilibrium()
     np.testing.assert_allclose(system.exact_point(x, system.values), 1.0, rtol=1e-12)
     assert np.abs(system.field.f(x, system.values)).max() < 1e-12

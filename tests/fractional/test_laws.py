@@ -84,9 +84,7 @@ def test_directions_add_up(law_of):
 
 
 def test_what_does_not_move_a_law_has_no_direction(system_of):
-    system = system_of(
-        {"x": "k*w"}, elements=[("w", "x", "s**q")], parameters={"k": 1.0, "q": 0.5}
-    )
+    system = system_of({"x": "k*w"}, elements=[("w", "x", "s**q")], parameters={"k": 1.0, "q": 0.5})
     assert system.field.law_directions(system.values, np.array([1.0, 0.0])) is None
     assert system.field.law_directions(system.values, np.array([0.0, 1.0])) is not None
 
@@ -165,5 +163,5 @@ def test_principal_branch(law_of):
 
 
 def test_orders_beyond_two_are_refused(law_of):
-    with pytest.raises(ParameterError, match="has the order 2.5; fractional orders lie between -2 and 2"):
+    with pytest.raises(ParameterError, match=r"has the order 2\.5; fractional orders lie between"):
         law_of("(1 + s**q)/(1 + s**a)", q=2.5, a=2.0)

@@ -159,7 +159,7 @@ BAD_FILES = {
     "bad syntax": ("def model(:\n", r"line 1 raises SyntaxError"),
     "exits": ("raise SystemExit\n", r"line 1 raises SystemExit"),
     "unknown symbol": (PLAIN.replace('Symbol("x")', 'Symbol("y")'), r"unknown symbol 'y'"),
-    "cannot be compiled": (PLAIN.replace("-sp", "sp.gamma(sp").replace("x\")}", "x\"))}"), "gamma"),
+    "cannot be compiled": (PLAIN.replace("-sp", "sp.gamma(sp").replace('x")}', 'x"))}'), "gamma"),
 }
 
 

@@ -59,8 +59,20 @@ def test_symbols_come_back_without_assumptions():
 
 @pytest.mark.parametrize(
     "text",
-    ["exp(s)", "log(s)", "(1 + s)**q", "1/(1 + s**a)**g", "s**s", "sin(s**q)", "sqrt(1 + s)",
-     "abs(s)", "s*sign(s)", "1 if s > 1 else 2", "max(s, 1)", "k**s"],
+    [
+        "exp(s)",
+        "log(s)",
+        "(1 + s)**q",
+        "1/(1 + s**a)**g",
+        "s**s",
+        "sin(s**q)",
+        "sqrt(1 + s)",
+        "abs(s)",
+        "s*sign(s)",
+        "1 if s > 1 else 2",
+        "max(s, 1)",
+        "k**s",
+    ],
 )
 def test_no_quotient_of_powers(text):
     with pytest.raises(ModelError, match=r"law of 'w'.*quotient of sums of powers"):

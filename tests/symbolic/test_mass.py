@@ -94,9 +94,7 @@ def test_pivoting(case):
     symbols = sp.symbols("x y z a")
     mass = matrices()[case]
     right = [sp.sin(symbols[0]), symbols[1] ** 2, symbols[2] - symbols[0]]
-    model = Model(
-        "pivots", dict(zip("xyz", right, strict=True)), (Parameter("a", 0.7),), mass=mass
-    )
+    model = Model("pivots", dict(zip("xyz", right, strict=True)), (Parameter("a", 0.7),), mass=mass)
     compiled = compile_model(model)
     numbers = sp.lambdify(symbols, [mass, sp.Matrix(right)], "numpy")
     rng = np.random.default_rng(0)

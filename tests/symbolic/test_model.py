@@ -64,8 +64,10 @@ REFUSED = {
     ),
     "a mass of the wrong shape": ({"mass": sp.eye(2)}, ["(2, 2)", "(1, 1)", "1 states"]),
     "derived that sets nothing": (
-        {"parameters": (Parameter("alpha", 1.0), A),
-         "derived": (DerivedParameter("k", a, sets="alpa"),)},
+        {
+            "parameters": (Parameter("alpha", 1.0), A),
+            "derived": (DerivedParameter("k", a, sets="alpa"),),
+        },
         ["'k'", "'alpa'", "did you mean 'alpha'?"],
     ),
     "guess for nothing": ({"guess": {"z": 1.0}}, ["guess", "'z'", "there are: x"]),
@@ -121,8 +123,10 @@ NOT_COMPILED = {
         ["'k'", "'a'", "uniquely"],
     ),
     "a derived parameter that its target does not move": (
-        {"parameters": (A, Parameter("b", 1.0)),
-         "derived": (DerivedParameter("k", 2 * a, sets="b"),)},
+        {
+            "parameters": (A, Parameter("b", 1.0)),
+            "derived": (DerivedParameter("k", 2 * a, sets="b"),),
+        },
         ["'k'", "'b'"],
     ),
     "an unknown function": ({"equations": {"x": sp.gamma(x)}}, ["gamma", "elementary"]),

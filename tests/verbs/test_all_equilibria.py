@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 import racs_bif as rb
 
 
@@ -63,7 +64,7 @@ def test_a_transcritical_point_leads_to_its_other_branch():
         "transcritical", {"x": "p*x-x**2", "y": "-y"}, parameters={"p": -1.0}, guess={"x": 0.0}
     )
     diagram = rb.all_equilibria(model, "p", (-1, 1), probes=0)
-    assert [p.kind for p in diagram.special_points if p.label == "BP"][0] == "transcritical"
+    assert next(p.kind for p in diagram.special_points if p.label == "BP") == "transcritical"
     assert states_at(diagram, "p", 0.5, "x") == pytest.approx([0.0, 0.5], abs=1e-6)
     assert states_at(diagram, "p", -0.5, "x") == pytest.approx([-0.5, 0.0], abs=1e-6)
 

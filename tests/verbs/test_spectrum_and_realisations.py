@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+
 import racs_bif as rb
 from racs_bif.cli.main import main
 from racs_bif.errors import UsageError
