@@ -179,8 +179,8 @@ def _beyond_band(origin: Origin, found: Trace, method: str) -> str:
         return ""
     name = hopf_parameter(origin)
     return (
-        f" Between {name} = {min(out):.6g} and {max(out):.6g} the frequency of the orbits is outside "
-        f"the realisation's band, {low:g} to {high:g} rad/s: do not trust them there; use "
+        f" Between {name} = {min(out):.6g} and {max(out):.6g} the frequency of the orbits is "
+        f"outside the realisation's band, {low:g} to {high:g} rad/s: do not trust them there; use "
         "--orbits harmonic-balance, or a wider --band."
     )
 
