@@ -12,13 +12,16 @@ import resource
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import racs_bif as rb
 from racs_bif.charts.plane import Plane
 from racs_bif.fractional.argument import count_unstable
-from racs_bif.fractional.system import System
+
+if TYPE_CHECKING:
+    from racs_bif.fractional.system import System
 
 SPANS = ((0.02, 0.6), (5.0, 400.0))
 CURVE = ((0.281572, 5.0), (0.295587, 100.0), (0.332436, 400.0))

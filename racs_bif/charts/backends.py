@@ -101,7 +101,9 @@ class LocalProcesses(Backend):
                     following = next(waiting, None)
                     if following is not None:
                         running[pool.submit(_compute, following)] = following
+            pool.shutdown()
         finally:
+            # What is still running when the caller gives up is not waited for.
             pool.shutdown(wait=False, cancel_futures=True)
 
 

@@ -177,38 +177,25 @@ def _count(
 def _on_axis(tally: _Tally) -> Array:
     """Return the change of the phase over pi around the right half plane, its upper half."""
     sums = tally.sums
-    inner, outer = sums.radii()
-    everyone = np.arange(len(sums))
+    inner, outer = _rims(sums, common=True)
 
     def contour(_: Places, x: Array) -> Complex:
         return np.asarray(x + 1j * _QUARTER)
 
-    if sums.exponents.shape[1] > 1:
-        return _around(tally, (contour, outer, inner), None, np.ones(len(sums), dtype=bool))
-    # One sweep over places that all share, by products of matrices.
-    top, bottom = float(outer.max()), float(inner.min())
-    x = np.linspace(top, bottom, max(4, int(np.ceil((top - bottom) / _SPACING)) + 1))
-    value, slope, scale = sums.on_ray(x, _QUARTER)
-    sizes = np.abs(value)
-    lowest = sizes.argmin(axis=0)
-    tally.see(sizes[lowest, everyone], np.exp(x[lowest]))
-    tally.evaluations += len(x)
-    log, rate = _logarithm(value, slope, scale)
-    shape = (len(x) - 1, len(sums))
-    owner = np.broadcast_to(everyone, shape).ravel()
-    wide = np.broadcast_to(x[:, None].astype(complex), log.shape)
-    columns = (wide, wide + 1j * _QUARTER, log, rate)
-    left = tuple(c[:-1].reshape(-1) for c in columns)
-    right = tuple(c[1:].reshape(-1) for c in columns)
-    tally.follow(_Steps(owner, left, right), contour)
-    first = np.full(len(sums), top + 1j * _QUARTER)
-    last = np.full(len(sums), bottom + 1j * _QUARTER)
-    return _closed(tally, first, last, np.ones(len(sums), dtype=bool))
+    return _around(tally, (contour, outer, inner), None, np.ones(len(sums), dtype=bool))
+
+
+def _rims(sums: Sums, *, common: bool) -> tuple[Array, Array]:
+    """Return log |s| of the circles where contours end; the same for all where that may be."""
+    inner, outer = sums.radii()
+    if common and sums.exponents.shape[1] == 1:
+        return np.full(len(sums), inner.min()), np.full(len(sums), outer.max())
+    return inner, outer
 
 
 def _on_lines(tally: _Tally, above: Array) -> Array:
     """Return the change of the phase over pi around what is right of the lines, its upper half."""
-    inner, outer = tally.sums.radii()
+    inner, outer = _rims(tally.sums, common=bool(np.ptp(above) == 0.0))
     # Where every power is whole there is no cut, and the contour ends on the real axis.
     whole = bool(np.all(tally.sums.exponents == np.round(tally.sums.exponents)))
     size = np.maximum(np.abs(above), 1e-280)
@@ -282,6 +269,9 @@ def _divided(
     end: Array,
 ) -> _Steps:
     """Return first steps along the contours of some, x from begin to end."""
+    all_alike = tally.sums.exponents.shape[1] == 1 and len(which) == len(tally.sums)
+    if all_alike and np.ptp(begin) == 0.0 and np.ptp(end) == 0.0:
+        return _swept(tally, contour, float(begin[0]), float(end[0]))
     steps = np.maximum(3, np.ceil(np.abs(end - begin)[which] / _SPACING)).astype(np.int64)
     owner = np.repeat(which, steps + 1)
     stop = np.cumsum(steps + 1)
@@ -293,6 +283,25 @@ def _divided(
     starts = np.delete(np.arange(len(owner)), stop - 1)
     left, right = tuple(c[starts] for c in columns), tuple(c[starts + 1] for c in columns)
     return _Steps(owner[starts], left, right)
+
+
+def _swept(
+    tally: _Tally, contour: Callable[[Places, Array], Complex], begin: float, end: float
+) -> _Steps:
+    """Return first steps along a contour that all share: products of matrices give them."""
+    x = np.linspace(begin, end, max(4, int(np.ceil(abs(end - begin) / _SPACING)) + 1))
+    t = contour(np.zeros(len(x), dtype=np.intp), x)
+    value, slope, scale = tally.sums.at_common(t)
+    everyone, sizes = np.arange(len(tally.sums)), np.abs(value)
+    lowest = sizes.argmin(axis=0)
+    tally.see(sizes[lowest, everyone], np.exp(t[lowest]).imag)
+    tally.evaluations += len(x)
+    log, rate = _logarithm(value, slope, scale)
+    wide = [np.broadcast_to(row[:, None], log.shape) for row in (x.astype(complex), t)]
+    columns = (*wide, log, rate)
+    owner = np.broadcast_to(everyone, (len(x) - 1, len(everyone))).ravel()
+    left = tuple(c[:-1].reshape(-1) for c in columns)
+    return _Steps(owner, left, tuple(c[1:].reshape(-1) for c in columns))
 
 
 def _logarithm(value: Complex, slope: Complex, scale: Array | Complex) -> tuple[Complex, Complex]:

@@ -1,8 +1,8 @@
 """The rightmost exact root of many parameter sets at once.
 
-Roots known at one set are polished by Newton's method on det Delta at all others; the rightmost of
-each is certified by the argument principle, which must count nothing right of it. Where it does
-not, all roots of one of these sets are computed anew and the rest is tried again with those.
+Roots known at one set are polished by Newton's method on det Delta at all others; that no other is
+right of them is certified by the argument principle. Where it is not so, all roots of one of
+these sets are computed anew and the rest is tried again with those.
 """
 
 from __future__ import annotations
@@ -31,6 +31,9 @@ _CONVERGED = 1e-10
 _BESIDE = 1e-6
 _MOST = 40
 _KEPT = 4
+_TOGETHER = 512
+_REAL = 1e-10
+_SAME = 1e-6
 
 
 @dataclass(frozen=True)
@@ -75,15 +78,12 @@ def rightmost(model: ExactModel, sums: Sums, X: Array, P: Array) -> Rightmost:
         if known is None:
             hopeless[place] = True
             continue
-        better, spent = _tracked(sums.take(rest), known)
+        roots, spent = _tracked(sums.take(rest), known)
         evaluations[rest] += spent
-        both = np.stack([root[rest], better])
-        order = np.where(np.isnan(both), -np.inf, both.real)
-        root[rest] = both[order.argmax(axis=0), np.arange(len(rest))]
-        found = rest[np.isfinite(root[rest].real)]
-        good, spent = _certified(sums.take(found), root[found])
-        evaluations[found] += spent
-        sure[found[good]] = True
+        good, spent = _certified(sums.take(rest), roots)
+        evaluations[rest] += spent
+        root[rest[good]] = roots[0, good]
+        sure[rest[good]] = True
         if not sure[place]:
             hopeless[place] = True
     root[~sure] = np.nan
@@ -107,10 +107,13 @@ def _roots(model: ExactModel, X: Array, P: Array) -> Complex | None:
 
 
 def _tracked(sums: Sums, known: Complex) -> tuple[Complex, NDArray[np.int64]]:
-    """Return the rightmost of the roots that Newton's method finds from known ones."""
-    best = np.full(len(sums), np.nan, dtype=complex)
+    """Return the roots (k, N) that Newton's method finds from known ones, the rightmost first.
+
+    Each is there once, with Im >= 0; NaN fills up.
+    """
+    roots = np.full((len(known), len(sums)), np.nan, dtype=complex)
     evaluations = np.zeros(len(sums), dtype=np.int64)
-    for start in known:
+    for k, start in enumerate(known):
         t = np.full(len(sums), np.log(start + 0j))
         moving = np.arange(len(sums))
         done = np.zeros(len(sums), dtype=bool)
@@ -127,16 +130,37 @@ def _tracked(sums: Sums, known: Complex) -> tuple[Complex, NDArray[np.int64]]:
                 break
         on_sheet = done & (np.abs(t.imag) <= np.pi + _CONVERGED)
         s = np.exp(np.where(on_sheet, t, 0.0))
-        s = np.where(on_sheet, s.real + 1j * np.abs(s.imag), np.nan)
+        s = s.real + 1j * np.where(np.abs(s.imag) <= _REAL * np.abs(s), 0.0, np.abs(s.imag))
         with np.errstate(invalid="ignore"):
-            further = np.isnan(best) | (s.real > best.real)
-        best = np.where(on_sheet & further, s, best)
-    return best, evaluations
+            again = (np.abs(roots[:k] - s) <= _SAME * np.abs(s)).any(axis=0)
+        roots[k] = np.where(on_sheet & ~again, s, np.nan)
+    order = np.argsort(np.where(np.isnan(roots), np.inf, -roots.real), axis=0, kind="stable")
+    return np.take_along_axis(roots, order, axis=0), evaluations
 
 
-def _certified(sums: Sums, root: Complex) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
-    """Say where nothing is right of the roots, by the argument principle."""
-    if not len(root):
-        return np.zeros(0, dtype=bool), np.zeros(0, dtype=np.int64)
-    counts = count_right(sums, root.real + _BESIDE * np.abs(root))
-    return counts.unstable == 0, counts.evaluations
+def _certified(sums: Sums, roots: Complex) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+    """Say where nothing is right of the first roots, by the argument principle.
+
+    Most are certified together: right of a line a little left of all their rightmost roots there
+    are as many roots as are known there. The rest is counted right of its own root each.
+    """
+    good = np.zeros(roots.shape[1], dtype=bool)
+    evaluations = np.zeros(roots.shape[1], dtype=np.int64)
+    there = np.flatnonzero(~np.isnan(roots[0]))
+    order = there[np.argsort(roots[0, there].real, kind="stable")]
+    for k in range(0, len(order), _TOGETHER):
+        cells = order[k : k + _TOGETHER]
+        line = float(roots[0, cells[0]].real - _BESIDE * np.abs(roots[0, cells[0]]))
+        with np.errstate(invalid="ignore"):
+            right = roots[:, cells].real > line
+        known = np.where(right, np.where(roots[:, cells].imag > 0.0, 2, 1), 0).sum(axis=0)
+        counts = count_right(sums.take(cells), line)
+        evaluations[cells] += counts.evaluations
+        good[cells] = counts.unstable == known
+    rest = there[~good[there]]
+    if len(rest):
+        rightmost = roots[0, rest]
+        counts = count_right(sums.take(rest), rightmost.real + _BESIDE * np.abs(rightmost))
+        evaluations[rest] += counts.evaluations
+        good[rest] = counts.unstable == 0
+    return good, evaluations

@@ -95,30 +95,28 @@ class Sums:
             values.append((real.sum(axis=0) + 1j * imaginary.sum(axis=0)) / total)
         return (*values, top + np.log(total))
 
-    def on_ray(self, x: Array, angle: float) -> tuple[Complex, Complex, Array]:
-        """Return all sums at the same M places of a ray, for exponents that all share.
+    def at_common(self, t: Complex) -> tuple[Complex, Complex, Array]:
+        """Return all sums at the same M places, for exponents that all share.
 
         Parameters
         ----------
-        x : array (M,)
-            log |s|.
-        angle : float
-            arg s.
+        t : complex array (M,)
+            Logarithms of s.
 
         Returns
         -------
         (complex array (M, N), complex array (M, N), array (M, N))
-            The value and its derivative by log s, and the logarithm of their scale, as `evaluate`.
+            The value and its derivative by t, and the logarithm of their scale, as `evaluate`.
         """
         e = self.exponents[:, 0]
-        powers = np.outer(x, e)
+        powers = np.outer(t.real, e)
         top = powers.max(axis=1)
         powers = np.exp(powers - top[:, None])
         total = powers @ np.abs(self.coefficients)
-        turned = powers * np.exp(1j * e * angle)
+        turned = powers * np.exp(1j * np.outer(t.imag, e))
         # One real product for the value and the derivative, real and imaginary parts.
         stacked = np.concatenate([turned.real, turned.imag, turned.real * e, turned.imag * e])
-        parts = (stacked @ self.coefficients).reshape(4, len(x), -1) / total
+        parts = (stacked @ self.coefficients).reshape(4, len(t), -1) / total
         value, slope = parts[0] + 1j * parts[1], parts[2] + 1j * parts[3]
         return value, slope, np.log(total) + top[:, None]
 
