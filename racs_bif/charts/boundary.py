@@ -191,7 +191,9 @@ def _boundary(
     problem: HopfBoundary | FoldBoundary | StaticBoundary,
     found: Trace,
 ) -> Boundary:
-    points, n = found.points, problem.n
+    n = problem.n
+    # A Hopf boundary that runs into a static one may overstep it by a point.
+    points = [p for p in found.points if seed.kind != "hopf" or p.z[n] > 0.0]
     closed = Stopped.CLOSED in {found.stopped, found.stopped_backward}
     values = np.array([p.z[-2:] for p in points])
     nan = np.full(len(points), np.nan)

@@ -146,7 +146,7 @@ class Lattice:
             at = self.place(key)
             found, reached = self.sheet.follow(X[:, None], place[:, None], at[:, None])
             if reached[0] == 1.0:
-                self._record([key], found)
+                self._record([key], found, at[:, None])
                 break
         else:
             raise ConvergenceError(self._lost())
@@ -176,8 +176,23 @@ class Lattice:
         )
 
     def add(self, keys: Iterable[Key], spacing: int) -> None:
-        """Add nodes, each continued from a neighbour at a spacing that has an equilibrium."""
+        """Add nodes, each continued from a neighbour at a spacing that has an equilibrium.
+
+        Where that fails it is tried a little aside: a node may lie on a boundary.
+        """
         pending = sorted(set(keys) - set(self.nodes))
+        pending = self._spread(pending, spacing, 0.0)
+        for aside in _ASIDE:
+            before = len(pending)
+            pending = self._spread(pending, spacing, aside)
+            if len(pending) < before:
+                pending = self._spread(pending, spacing, 0.0)
+        nowhere = np.full(self.sheet.size, np.nan)
+        for key in pending:
+            self.nodes[key] = Node(NOTHING, nowhere, np.nan, np.nan, np.nan, self.place(key))
+
+    def _spread(self, pending: list[Key], spacing: int, aside: float) -> list[Key]:
+        """Continue equilibria from node to node; return the nodes that are not reached."""
         tried: set[tuple[Key, Key]] = set()
         while pending:
             jobs = []
@@ -190,21 +205,21 @@ class Lattice:
                 break
             tried.update(jobs)
             start = np.array([self.place(source) for _, source in jobs]).T
-            end = np.array([self.place(key) for key, _ in jobs]).T
+            end = self._aside(np.array([self.place(key) for key, _ in jobs]).T, aside)
             X = np.array([self.nodes[source].X for _, source in jobs]).T
             X, reached = self.sheet.follow(X, start, end)
             good = np.flatnonzero(reached == 1.0)
             if len(good):
-                self._record([jobs[k][0] for k in good], X[:, good])
+                self._record([jobs[k][0] for k in good], X[:, good], end[:, good])
             pending = [key for key in pending if key not in self.nodes]
-        nowhere = np.full(self.sheet.size, np.nan)
-        for key in pending:
-            self.nodes[key] = Node(NOTHING, nowhere, np.nan, np.nan, np.nan, self.place(key))
+        return pending
 
-    def _record(self, keys: list[Key], X: Array) -> None:
+    def _aside(self, places: Array, by: float) -> Array:
+        """Return places moved inwards by a share of the finest spacing."""
+        return np.asarray(places + by / self.side * np.where(places > 0.5, -1.0, 1.0))
+
+    def _record(self, keys: list[Key], X: Array, at: Array) -> None:
         self._scale = None
-        at = np.array([self.place(key) for key in keys]).T
-        X = X.copy()
         counts, static = self.counter(X, self.plane.vectors(at))
         unstable = counts.unstable.copy()
         for aside in _ASIDE:
@@ -212,7 +227,7 @@ class Lattice:
             if not len(lost):
                 break
             # Beside a boundary that runs along the lattice its nodes can be counted again.
-            moved = at[:, lost] + aside / self.side * np.where(at[:, lost] > 0.5, -1.0, 1.0)
+            moved = self._aside(at[:, lost], aside)
             found, reached = self.sheet.follow(X[:, lost], at[:, lost], moved)
             again = self.counter(found, self.plane.vectors(moved))[0].unstable
             good = (reached == 1.0) & (again >= 0)

@@ -17,8 +17,8 @@ _ITERATIONS = 8
 _CONTRACTION = 0.25
 _TOLERANCE = 1e-11
 _SMALL = 1e-7
-_SHORTEST = 2.0**-10
-_STEPS = 200
+_SHORTEST = 2.0**-16
+_STEPS = 400
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,9 @@ def continue_equilibria(
     """Follow the equilibrium near the model's guess as one parameter moves through a span.
 
     Folds (LP), Hopf points (H) and branch points (BP) are located. Hopf points of a fractional
-    model are solved again on its exact characteristic function, and the shift is reported.
+    model are solved again on its exact characteristic function, and the shift is reported. From a
+    few hundred states on, where the Jacobian is sparse, the spectrum holds the eigenvalues that may
+    be unstable and some near them; `stopped` says so where that search could not be complete.
 
     Parameters
     ----------

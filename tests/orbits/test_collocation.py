@@ -458,7 +458,7 @@ def test_structure_is_the_jacobian(vehicle):
     problem, z = vehicle
     p = problem.path.vector(z[-1])
     structure = problem.field.structure(p)
-    points = np.ascontiguousarray(problem.nodes(z).reshape(-1, 12).T)
+    points = np.ascontiguousarray(problem.nodes(z).reshape(-1, len(problem.field.states)).T)
     whole = structure.constant + structure.left @ structure.varying(points) @ structure.right
     np.testing.assert_allclose(whole, problem.field.f_x(points, p), atol=1e-9)
     assert structure.rank == 3
