@@ -19,6 +19,9 @@ from racs_bif.errors import UsageError
 
 if TYPE_CHECKING:
     from argparse import Namespace
+    from collections.abc import Sequence
+
+    from rich.console import Console
 
     from racs_bif.fractional.system import System
     from racs_bif.results.branch import Branch
@@ -73,6 +76,14 @@ def configure(parser: Parser) -> None:
         "--point", metavar="NAME", help="where to start if there are several, for example H2"
     )
     parser.add_argument(
+        "--through",
+        action="append",
+        default=[],
+        metavar="POINT[:KIND]",
+        help="follow another curve through a point of codimension two as well, for example "
+        "BT1:fold, HH1:hopf2; by default the kind that the point was not found on",
+    )
+    parser.add_argument(
         "--operator",
         type=choice("exact", "realised"),
         help="exact equation (default with fractional elements) or realisation",
@@ -111,7 +122,13 @@ def run(arguments: Namespace) -> int:
         curve = continue_curve(
             start, names, spans, kind=arguments.kind, operator=operator, progress=report
         )
-    return _finish(curve, arguments)
+        curves = [curve]
+        for wanted in arguments.through:
+            name, _, kind = wanted.partition(":")
+            point = _codimension_two(curves, name)
+            report = task(f"{kind or 'other'} curve through {name}", spans[names[1]])
+            curves.append(continue_curve(point, names, spans, kind=kind or None, progress=report))
+    return _finish(curves, arguments)
 
 
 def default_span(system: System, name: str) -> tuple[float, float]:
@@ -161,7 +178,24 @@ def _start(system: System, arguments: Namespace, task: Any) -> SpecialPoint:  # 
     raise UsageError(msg)
 
 
-def _finish(curve: Branch, arguments: Namespace) -> int:
+def _codimension_two(curves: list[Branch], name: str) -> SpecialPoint:
+    """Return a point of codimension two by name.
+
+    Raises
+    ------
+    UsageError
+        If no curve has it; the message says which there are and what they start.
+    """
+    points = [p for curve in curves for p in curve.special if p.label not in {"EP", "MX", "UZ"}]
+    for point in points:
+        if point.name == name:
+            return point
+    there = ", ".join(f"{p.name} ({p.data.get('starts', p.title)})" for p in points) or "none"
+    msg = f"--through {name}: no such point on the curve; there are: {there}"
+    raise UsageError(msg)
+
+
+def _finish(curves: list[Branch], arguments: Namespace) -> int:
     from racs_bif import __version__
     from racs_bif.cli.terminal import warn
     from racs_bif.plots.curve import picture
@@ -171,10 +205,10 @@ def _finish(curve: Branch, arguments: Namespace) -> int:
     from racs_bif.results.files import save
     from racs_bif.results.summary import curve_points, summarise, to_text, write_summary
 
-    diagram = Diagram(curve)
+    diagram = Diagram(*curves)
     summary = summarise(diagram, arguments.command, __version__)
-    summary |= {"points": curve_points(curve)}
-    figure = picture([curve])
+    summary |= {"points": [point for curve in diagram for point in curve_points(curve)]}
+    figure = picture(diagram.branches)
     with staged(arguments.out) as folder:
         save(diagram, folder / FILES[0])
         save_picture(figure, folder / FILES[1])
@@ -182,20 +216,29 @@ def _finish(curve: Branch, arguments: Namespace) -> int:
         write_summary(summary, folder / FILES[3])
     if arguments.json:
         print(to_text(summary), end="")
-    _tell(curve, arguments)
-    if curve.early:
-        warn(f"ended early, saved what there is in {arguments.out}: {curve.stopped}")
-    return int(curve.early)
+    _tell(diagram.branches, arguments)
+    early = " | ".join(f"{curve.name}: {curve.stopped}" for curve in diagram if curve.early)
+    if early:
+        warn(f"ended early, saved what there is in {arguments.out}: {early}")
+    return int(bool(early))
 
 
-def _tell(curve: Branch, arguments: Namespace) -> None:
-    from rich.table import Table
-
+def _tell(curves: Sequence[Branch], arguments: Namespace) -> None:
     from racs_bif.cli.tables import heading
     from racs_bif.cli.terminal import console
 
     screen = console(arguments)
-    screen.print(heading(curve.system))
+    screen.print(heading(curves[0].system))
+    for curve in curves:
+        _tell_curve(curve, screen)
+    for note in curves[0].system.notes:
+        screen.print(f"\nNote: {note}")
+    screen.print(f"\nWrote {', '.join(FILES)} to {arguments.out.resolve()}", soft_wrap=True)
+
+
+def _tell_curve(curve: Branch, screen: Console) -> None:
+    from rich.table import Table
+
     a, b = curve.parameters
     screen.print(f"\n{curve.name}: {curve.method}, {len(curve)} points. {curve.stopped}")
     table = Table(box=None, pad_edge=False, collapse_padding=True)
@@ -212,15 +255,15 @@ def _tell(curve: Branch, arguments: Namespace) -> None:
             if min(column[0], column[-1]) <= column[k] <= max(column[0], column[-1]):
                 continue
             rows.append((f"{extreme} {name}", k, "among the points"))
-    rows += [(p.name, p.index, p.title) for p in curve.special if p.label not in {"EP", "MX"}]
+    for p in curve.special:
+        if p.label not in {"EP", "MX"}:
+            starts = p.data.get("starts")
+            rows.append((p.name, p.index, f"{p.title}; starts {starts}" if starts else p.title))
     for name, k, told in rows:
         numbers = [*curve.values[k], *(_at(curve, m, k) for m in ("omega", "l1"))]
         shown = ["-" if math.isnan(n) else f"{n:.7g}" for n in numbers]
         table.add_row(name, *shown, told)
     screen.print(table)
-    for note in curve.system.notes:
-        screen.print(f"\nNote: {note}")
-    screen.print(f"\nWrote {', '.join(FILES)} to {arguments.out.resolve()}", soft_wrap=True)
 
 
 def _at(curve: Branch, measure: str, k: int) -> float:

@@ -124,7 +124,7 @@ def curve_points(curve: Branch) -> list[Json]:
     names = [name for name in ("omega", "l1", "neutral") if name in curve.measures]
     points: list[Json] = []
     for k, label in enumerate(curve.labels):
-        point: dict[str, object] = {"parameters": _parameters(curve, k)}
+        point: dict[str, object] = {"curve": curve.name, "parameters": _parameters(curve, k)}
         point |= {name: float(curve.measures[name][k]) for name in names}
         points.append(to_json(point | {"label": label}))
     return points

@@ -52,6 +52,21 @@ def test_hopf_curve_of_bazykins_model_ends_in_its_bogdanov_takens_point(capsys, 
     assert any(place == known for place in places)
 
 
+def test_the_fold_curve_through_a_bogdanov_takens_point(capsys, tmp_path):
+    file = tmp_path / "bazykin.py"
+    file.write_text(BAZYKIN, encoding="utf-8")
+    spans = ["--span", "al", "0.1", "1.0", "--span", "de", "0.01", "0.5"]
+    out = ["--json", "--out", str(tmp_path / "out")]
+    arguments = ["--model", str(file), *spans, "--through", "BT1", *out]
+    assert main(["curve", "hopf", "al", "de", *arguments]) in {0, 1}
+    summary = json.loads(capsys.readouterr().out)
+    assert [b["name"][:2] for b in summary["branches"]] == ["HC", "LC"]
+    assert {p["curve"] for p in summary["points"]} == {b["name"] for b in summary["branches"]}
+    arguments = ["--model", str(file), *spans, "--through", "BT9", *out]
+    assert main(["curve", "hopf", "al", "de", *arguments]) == 2
+    assert "there are: BT1" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
