@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.paths import ParameterPath
 
 
+_ROUNDING = 1e-6
+"""Frequencies below this, relative to the largest entry of f_x, are the root of rounding errors."""
+
+
 @dataclass(frozen=True)
 class _Solved:
     """What one point needs more than once; V, W (2n, 2) span null spaces where G is zero."""
@@ -185,10 +189,15 @@ class HopfCurve(CurveProblem):
         return self._cubic[1]
 
     def measures(self, z: Array) -> dict[str, float]:
-        """Return frequency and first Lyapunov coefficient, NaN at a neutral saddle."""
+        """Return frequency and first Lyapunov coefficient, NaN at a neutral saddle.
+
+        It is infinite at a Bogdanov-Takens point, where rounding leaves a frequency of about the
+        root of the precision: NaN there too.
+        """
         omega = self.frequency(z)
         neutral = not omega > 0.0
-        l1 = float("nan") if neutral else self.cubic(z).c1.real / omega
+        rounding = omega <= _ROUNDING * float(np.abs(self._solve(z).A).max())
+        l1 = float("nan") if rounding else self.cubic(z).c1.real / omega
         return super().measures(z) | {"omega": omega, "l1": l1, "neutral": float(neutral)}
 
 
