@@ -196,8 +196,8 @@ class HopfCurve(CurveProblem):
         """
         omega = self.frequency(z)
         neutral = not omega > 0.0
-        rounding = omega <= _ROUNDING * float(np.abs(self._solve(z).A).max())
-        l1 = float("nan") if rounding else self.cubic(z).c1.real / omega
+        certain = omega > _ROUNDING * float(np.abs(self._solve(z).A).max())
+        l1 = self.cubic(z).c1.real / omega if certain else float("nan")
         return super().measures(z) | {"omega": omega, "l1": l1, "neutral": float(neutral)}
 
 
