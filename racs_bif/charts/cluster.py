@@ -77,7 +77,7 @@ class DaskCluster(Backend):
         numbers = {}
         for index in itertools.islice(waiting, ahead):
             numbers[hand(index)] = index
-        running = self._dask.as_completed(list(numbers))
+        running = self._dask.as_completed(list(numbers), loop=client.loop)
         for future in running:
             index = numbers.pop(future)
             try:

@@ -23,6 +23,7 @@ NOTHING, UNCOUNTED = -2, -1
 """No equilibrium was found; there is one, but its roots cannot be counted."""
 Key = tuple[int, int]
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
+_SHORT_OF = 0.97
 _ASIDE = (0.0137, 0.0419, 0.1093)
 _TRIALS = (0.5, 0.0, 1.0, 0.25, 0.75)
 
@@ -107,6 +108,7 @@ class Lattice:
         self.sheet = Sheet(plane)
         self.counter = Counter(self.sheet)
         self.nodes: dict[Key, Node] = {}
+        self.beside: list[Node] = []
         self._scale: Array | None = None
 
     def place(self, key: Key) -> Array:
@@ -190,6 +192,35 @@ class Lattice:
         nowhere = np.full(self.sheet.size, np.nan)
         for key in pending:
             self.nodes[key] = Node(NOTHING, nowhere, np.nan, np.nan, np.nan, self.place(key))
+
+    def along(self, line: Array) -> list[Node]:
+        """Return nodes just before the places (N, 2) of a fold, on the side of the equilibrium.
+
+        They are kept in `beside`; places that no node nearby leads to are left out.
+        """
+        nodes = [node for node in self.nodes.values() if node.count != NOTHING]
+        at = np.array([node.place for node in nodes])
+        nearest = np.hypot(*(line[:, None] - at).T).argmin(axis=0)
+        start = at[nearest].T
+        end = start + _SHORT_OF * (line.T - start)
+        X, reached = self.sheet.follow(np.array([nodes[k].X for k in nearest]).T, start, end)
+        good = np.flatnonzero(reached == 1.0)
+        if not len(good):
+            return []
+        counts, static = self.counter(X[:, good], self.plane.vectors(end[:, good]))
+        found = [
+            Node(
+                int(counts.unstable[j]),
+                X[:, k].copy(),
+                float(counts.margin[j]),
+                float(static[j]),
+                float(counts.omega[j]),
+                end[:, k].copy(),
+            )
+            for j, k in enumerate(good)
+        ]
+        self.beside += found
+        return found
 
     def _spread(self, pending: list[Key], spacing: int, aside: float) -> list[Key]:
         """Continue equilibria from node to node; return the nodes that are not reached."""

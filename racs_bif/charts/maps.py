@@ -29,6 +29,7 @@ Tile = dict[str, "NDArray[np.generic]"]
 _SIDE: Final = 64
 _NEAREST: Final = 3
 _AXIS: Final = 1e-9
+_SHORTEST: Final = 2.0**-16
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +195,9 @@ def _equilibria(job: MapJob, places: Array) -> tuple[Array, NDArray[np.bool_]]:
         if not len(rest):
             break
         source = order[rest, rank]
-        found, reached = sheet.follow(job.states[:, source], job.places[:, source], places[:, rest])
+        found, reached = sheet.follow(
+            job.states[:, source], job.places[:, source], places[:, rest], shortest=_SHORTEST
+        )
         good = reached == 1.0
         X[:, rest[good]], there[rest[good]] = found[:, good], True
     return X, there

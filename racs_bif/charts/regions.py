@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array
 
 _SAMPLES = 60
+_ALMOST = 0.95
 _SLIVER = 1e-6
 _EDGE = 1e-7
 
@@ -55,7 +56,7 @@ def regions(lattice: Lattice, boundaries: list[Boundary]) -> tuple[Region, ...]:
         What parts them.
     """
     lines = [boundary.line for boundary in boundaries]
-    nodes = list(lattice.nodes.values())
+    nodes = [*lattice.nodes.values(), *lattice.beside]
     places = np.clip([node.place for node in nodes], _EDGE, 1.0 - _EDGE)
     counts = np.array([node.count for node in nodes])
     found = []
@@ -65,9 +66,7 @@ def regions(lattice: Lattice, boundaries: list[Boundary]) -> tuple[Region, ...]:
         inside = np.flatnonzero(face.contains(places))
         place = _middle(face)
         if len(inside):
-            room = np.min(
-                [away(np.vstack([loop, loop[:1]]), places[inside]) for loop in face.loops], axis=0
-            )
+            room = _room(face, places[inside])
             count = int(counts[inside[int(np.argmax(room))]])
         else:
             count = _counted(lattice, place)
@@ -85,11 +84,17 @@ def _middle(face: Face) -> Array:
         places = np.column_stack([x.ravel(), y.ravel()])
         places = places[face.contains(places)]
         if len(places):
-            room = np.min(
-                [away(np.vstack([loop, loop[:1]]), places) for loop in face.loops], axis=0
-            )
-            return np.asarray(places[int(np.argmax(room))])
+            room = _room(face, places)
+            roomy = places[room >= _ALMOST * room.max()]
+            central = np.hypot(*(roomy - roomy.mean(axis=0)).T).argmin()
+            return np.asarray(roomy[int(central)])
     return np.asarray(face.outline.mean(axis=0))
+
+
+def _room(face: Face, places: Array) -> Array:
+    """Return distances (N,) of places (N, 2) to a face's outline and holes."""
+    loops = (np.vstack([loop, loop[:1]]) for loop in face.loops)
+    return np.asarray(np.min([away(loop, places) for loop in loops], axis=0))
 
 
 def _counted(lattice: Lattice, place: Array) -> int:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from racs_bif.charts.boundary import Boundary, Seed, trace_boundary
 from racs_bif.charts.edges import Edge
-from racs_bif.charts.lattice import Key, Lattice
+from racs_bif.charts.lattice import NOTHING, Key, Lattice
 from racs_bif.errors import ConvergenceError
 
 if TYPE_CHECKING:
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
     from racs_bif.charts.plane import Plane
     from racs_bif.charts.settings import ChartSettings
 
+_LINK = 0.1
+"""Nodes along a fold farther apart than this are no neighbours."""
+_FELT = {"margin": ("hopf",), "static": ("static", "fold")}
+"""Distances to instability, and what they go to zero at."""
 _HIDES = 0.75
 """A root's distance to the axis that falls by this share from node to node may vanish between."""
 
@@ -38,8 +43,10 @@ class Search:
         Leaves of the quadtree.
     boundaries : list of Boundary
         What was traced.
-    unexplained : list of (Key, Key)
-        Edges whose ends differ for no boundary that was found.
+    unexplained : list of (Key, Key) or int
+        Edges whose ends differ for no boundary that was found, by their nodes or place in `chain`.
+    chain : list of Edge
+        Edges along folds, on the side of the equilibrium.
     torn : int
         Edges whose ends have different equilibria: there are several over part of the plane.
     troubles : list of str
@@ -49,7 +56,8 @@ class Search:
     lattice: Lattice
     cells: list[Cell]
     boundaries: list[Boundary] = field(default_factory=list)
-    unexplained: list[EdgeKey] = field(default_factory=list)
+    unexplained: list[EdgeKey | int] = field(default_factory=list)
+    chain: list[Edge] = field(default_factory=list)
     torn: int = 0
     troubles: list[str] = field(default_factory=list)
 
@@ -117,13 +125,10 @@ def _trace_all(
     follow: Callable[[Seed], Boundary],
 ) -> None:
     """Trace boundaries until they explain every edge, or no more can be found."""
-    hopeless: set[EdgeKey] = set()
+    hopeless: set[EdgeKey | int] = set()
     while True:
         new = False
-        for key in _edges(found):
-            edge = edges.get(key)
-            if edge is None:
-                edge = edges[key] = Edge(found.lattice, *(found.lattice.nodes[k] for k in key))
+        for key, edge in _all_edges(found, edges):
             if key in hopeless or edge.explained(found.boundaries):
                 continue
             seed = edge.seed(found.boundaries)
@@ -136,13 +141,15 @@ def _trace_all(
                 found.troubles.append(f"a {seed.kind} boundary could not be traced: {error}")
                 hopeless.add(key)
                 continue
-            found.boundaries.append(boundary)
+            _keep(found, boundary)
             if not edge.explained(found.boundaries):
                 hopeless.add(key)
             new = True
         if not new:
             break
-    found.unexplained = [key for key in _edges(found) if not edges[key].explained(found.boundaries)]
+    found.unexplained = [
+        key for key, edge in _all_edges(found, edges) if not edge.explained(found.boundaries)
+    ]
 
 
 def _trace_folds(
@@ -162,9 +169,30 @@ def _trace_folds(
             if seed is None:
                 continue
             try:
-                found.boundaries.append(follow(seed))
+                _keep(found, follow(seed))
             except (ConvergenceError, np.linalg.LinAlgError) as error:
                 found.troubles.append(f"a fold boundary could not be traced: {error}")
+
+
+def _keep(found: Search, boundary: Boundary) -> None:
+    """Take in a boundary; along a fold look for others that end there."""
+    found.boundaries.append(boundary)
+    if boundary.kind == "fold":
+        nodes = found.lattice.along(found.lattice.plane.places(boundary.values.T).T)
+        found.chain += [
+            Edge(found.lattice, a, b)
+            for a, b in pairwise(nodes)
+            if float(np.hypot(*(a.place - b.place))) < _LINK
+        ]
+
+
+def _all_edges(found: Search, edges: dict[EdgeKey, Edge]) -> Iterator[tuple[EdgeKey | int, Edge]]:
+    """Yield every edge with its name."""
+    for key in _edges(found):
+        if key not in edges:
+            edges[key] = Edge(found.lattice, *(found.lattice.nodes[k] for k in key))
+        yield key, edges[key]
+    yield from enumerate(list(found.chain))
 
 
 def _edges(found: Search) -> list[EdgeKey]:
@@ -197,35 +225,41 @@ def _hides(found: Search, cell: Cell) -> bool:
     }
     if any(piece in sides for piece in found.unexplained):
         return True
-    counts = {nodes[key].count for key in corners}
-    if len(counts) > 1 or min(counts) < 0:
+    counts = {nodes[key].count for key in corners} - {NOTHING}
+    if len(counts) != 1 or min(counts) < 0:
         return False
-    for name in ("margin", "static"):
-        lowest = min(abs(getattr(nodes[key], name)) for key in corners)
-        steepest = 0.0
-        for key in corners:
-            for other in (
-                (key[0] + h, key[1]),
-                (key[0] - h, key[1]),
-                (key[0], key[1] + h),
-                (key[0], key[1] - h),
-            ):
-                if lattice.known(other):
-                    change = abs(getattr(nodes[key], name)) - abs(getattr(nodes[other], name))
-                    steepest = max(steepest, abs(change))
-        if lowest < _HIDES * steepest and not _near(found, cell):
+    known = [key for key in corners if lattice.known(key)]
+    for name, kinds in _FELT.items():
+        lowest = min(abs(getattr(nodes[key], name)) for key in known)
+        if lowest < _HIDES * _steepest(lattice, known, h, name) and not _near(found, cell, kinds):
             return True
     return False
 
 
-def _near(found: Search, cell: Cell) -> bool:
+def _steepest(lattice: Lattice, corners: list[Key], h: int, name: str) -> float:
+    """Return how much a distance to instability changes, at most, from a corner to a neighbour."""
+    changes = [0.0]
+    for i, j in corners:
+        here = abs(getattr(lattice.nodes[i, j], name))
+        around = ((i + h, j), (i - h, j), (i, j + h), (i, j - h))
+        changes += [
+            abs(here - abs(getattr(lattice.nodes[key], name)))
+            for key in around
+            if lattice.known(key)
+        ]
+    return max(changes)
+
+
+def _near(found: Search, cell: Cell, kinds: tuple[str, ...]) -> bool:
     """Say whether a boundary passes within a cell's side of it: that is what its corners feel."""
     i, j, h = cell
     side = h / found.lattice.side
     low = np.array([i, j]) / found.lattice.side - side
     high = low + 3.0 * side
     return any(
-        bool(np.any(np.all((b.line >= low) & (b.line <= high), axis=1))) for b in found.boundaries
+        bool(np.any(np.all((b.line >= low) & (b.line <= high), axis=1)))
+        for b in found.boundaries
+        if b.kind in kinds
     )
 
 

@@ -17,7 +17,7 @@ _ITERATIONS = 8
 _CONTRACTION = 0.25
 _TOLERANCE = 1e-11
 _SMALL = 1e-7
-_SHORTEST = 2.0**-16
+SHORTEST = 2.0**-10
 _STEPS = 400
 
 
@@ -131,7 +131,9 @@ class Sheet:
         step[:, bad] = np.nan
         return np.asarray(step)
 
-    def follow(self, X: Array, start: Array, end: Array) -> tuple[Array, Array]:
+    def follow(
+        self, X: Array, start: Array, end: Array, *, shortest: float = SHORTEST
+    ) -> tuple[Array, Array]:
         """Continue equilibria along straight lines.
 
         Parameters
@@ -140,6 +142,8 @@ class Sheet:
             Equilibria at the starts.
         start, end : array (2, N)
             Places in the unit square.
+        shortest : float
+            Shortest step, of a line. The nearer to a fold they are to come, the shorter it must be.
 
         Returns
         -------
@@ -149,7 +153,7 @@ class Sheet:
         X = np.array(X, dtype=float)
         reached, step = np.zeros(X.shape[1]), np.ones(X.shape[1])
         for _ in range(_STEPS):
-            moving = np.flatnonzero((reached < 1.0) & (step >= _SHORTEST))
+            moving = np.flatnonzero((reached < 1.0) & (step >= shortest))
             if not len(moving):
                 break
             goal = np.minimum(reached[moving] + step[moving], 1.0)

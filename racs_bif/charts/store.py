@@ -73,7 +73,7 @@ class TileStore:
             if not path.exists():
                 continue
             try:
-                with np.load(path, allow_pickle=False) as arrays:
+                with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
                     found[index] = {name: arrays[name] for name in arrays.files}
             except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
                 path.unlink()  # damaged: it is computed again

@@ -74,6 +74,11 @@ def draw(chart: Chart, *, ax: Axes | None = None) -> Axes:
         shown = _draw(chart, ax, scale)
         if shown is not None and scale is not None:
             ax.figure.colorbar(shown, ax=ax, label=scale.title, pad=0.02)
+        handles, titles = _legend_entries([ax])
+        if handles:
+            # Above the axes it covers nothing.
+            place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0)}
+            ax.legend(handles, titles, ncols=2, borderaxespad=0.2, columnspacing=1.0, **place)
         _annotate(chart, ax)
     return ax
 
@@ -112,6 +117,9 @@ def picture_slices(slices: ChartSlices) -> Figure:
             ax.set_visible(False)
         if shown is not None and scale is not None:
             figure.colorbar(shown, ax=grid, label=scale.title, pad=0.02)
+        handles, titles = _legend_entries(list(grid.flat))
+        if handles:
+            figure.legend(handles, titles, loc="outside lower center", ncols=3)
         for chart, ax in zip(slices, grid.flat, strict=False):
             _annotate(chart, ax)
     figure.set_layout_engine("none")
@@ -131,7 +139,7 @@ def _scale(charts: list[Chart]) -> _Scale | None:
         return None
     every = np.concatenate(omegas)
     low, high = float(every.min()), float(every.max())
-    margin = max(0.0, 1e-3 * high - (high - low))
+    margin = max(0.0, 0.5 * (0.1 * high - (high - low)))
     return _Scale(low - margin, high + margin, r"frequency on the boundary, $\omega$ [rad/s]")
 
 
@@ -266,7 +274,7 @@ def _annotate(chart: Chart, ax: Axes) -> None:
         written = _inside(chart, region, text, ax)
         if written is not None:
             taken.append(written.get_window_extent())
-        elif region.area > 2e-3:
+        elif region.area > 2e-4:
             small.append(Label(text, float(region.place[0]), float(region.place[1])))
     for boundary in chart.boundaries:
         for point in boundary.points:
@@ -275,20 +283,18 @@ def _annotate(chart: Chart, ax: Axes) -> None:
                 small.append(Label("GH", x, y))
     if chart.nominal is not None:
         small.append(Label("nominal", *map(float, chart.nominal)))
-    handles, titles = _legend_entries(ax)
-    if handles:
-        legend = ax.legend(handles, titles, loc="best", frameon=True, framealpha=0.9, borderpad=0.3)
-        ax.get_figure().draw_without_rendering()  # type: ignore[union-attr] # it has one
-        taken.append(legend.get_window_extent())
     for note in place(ax, small, taken=taken):
         note.set_bbox({"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6})
 
 
-def _legend_entries(ax: Axes) -> tuple[list[Any], list[str]]:
+def _legend_entries(axes: list[Axes]) -> tuple[list[Any], list[str]]:
+    """Return what a legend has to explain: lines that are not coloured by frequency."""
     from matplotlib.lines import Line2D
 
-    handles, titles = ax.get_legend_handles_labels()
-    kept = dict(zip(titles, handles, strict=True))
+    kept: dict[str, Any] = {}
+    for ax in axes:
+        handles, titles = ax.get_legend_handles_labels()
+        kept |= dict(zip(titles, handles, strict=True))
     if "subcritical" in kept:
         dark = Line2D([], [], color=BLACK, linewidth=2.8)
         kept["subcritical"] = (dark, kept["subcritical"])

@@ -48,7 +48,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_map(job, tmp_path):
 def test_no_scheduler_there(job, monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr("racs_bif.charts.cluster._PATIENCE", 0.5)
-    with pytest.raises(UsageError, match="no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
+    with pytest.raises(UsageError, match="no Dask scheduler answers at"):
         run_map(job, DaskCluster("tcp://127.0.0.1:9"))
 
 

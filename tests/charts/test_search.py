@@ -93,13 +93,16 @@ def test_boundaries_that_run_along_the_lattice_and_meet(searched):
 
 def test_where_the_equilibrium_ends(searched):
     found = searched("fold", ("a", "b"), ((-1.0, 1.03), (-0.5, 1.5)))
-    (boundary,) = found.boundaries
-    assert boundary.kind == "fold"
-    assert boundary.values[:, 0] == pytest.approx(-(boundary.values[:, 1] ** 2) / 4.0, abs=1e-12)
+    fold, hopf = sorted(found.boundaries, key=lambda boundary: boundary.kind)
+    assert (fold.kind, hopf.kind) == ("fold", "hopf")
+    assert fold.values[:, 0] == pytest.approx(-(fold.values[:, 1] ** 2) / 4.0, abs=1e-12)
+    # Where x = -1/2, in a wedge that ends at the fold (BT) and is narrower than a cell.
+    assert hopf.values[:, 0] == pytest.approx(0.25 - hopf.values[:, 1] / 2.0, abs=1e-12)
+    assert hopf.values.min(axis=0) == pytest.approx([-0.5, 1.0], abs=1e-3)
     areas = held(found)
-    assert set(areas) == {0, NOTHING}
     b = np.linspace(-0.5, 1.5, 20001)
-    assert areas[0] == pytest.approx(np.mean((1.03 + b**2 / 4.0) / 2.03), abs=1e-5)
+    there, wedge = np.mean((1.03 + b**2 / 4.0) / 2.03), 0.5**3 / 12.0 / 4.06
+    assert areas == pytest.approx({0: there - wedge, 2: wedge, NOTHING: 1.0 - there}, abs=2e-5)
 
 
 def test_folds_between_several_equilibria(searched):
@@ -129,7 +132,9 @@ def test_points_wanted_exactly(model_of):
     marked = {tuple(np.round(p.values, 9)) for p in found.boundaries[0].special}
     high = np.sqrt(0.04 - 0.029**2)
     wide = np.sqrt(0.04 - 0.113**2)
-    expected = {(0.4, 0.613 + s * high) for s in (1, -1)} | {(0.371 + s * wide, 0.5) for s in (1, -1)}
+    expected = {(0.4, 0.613 + s * high) for s in (1, -1)} | {
+        (0.371 + s * wide, 0.5) for s in (1, -1)
+    }
     assert marked == {(round(a, 9), round(b, 9)) for a, b in expected}
 
 
@@ -141,7 +146,9 @@ def test_a_stable_plane_has_no_boundary(searched):
 
 def test_a_plane_without_equilibria_says_so():
     nowhere = system_of(
-        model_from_strings("nowhere", {"x": "1 + a**2 + b**2 + x**2"}, parameters={"a": 0.1, "b": 0})
+        model_from_strings(
+            "nowhere", {"x": "1 + a**2 + b**2 + x**2"}, parameters={"a": 0.1, "b": 0}
+        )
     )
     with pytest.raises(ConvergenceError, match="'nowhere' found anywhere in a 0 to 1 and b 0 to 1"):
         search(Plane(nowhere, ("a", "b"), UNIT), ChartSettings())
