@@ -18,6 +18,23 @@ REAL = 1e-7
 _OFF = 1e-3
 
 
+_DEGENERATE = 1e-15
+"""Coefficients below this are rounding: a linear system, or a vertical branch of orbits."""
+
+
+def criticality(l1: float) -> str:
+    """Say in a word what the sign of the first Lyapunov coefficient means.
+
+    Examples
+    --------
+    >>> criticality(-0.5), criticality(0.0)
+    ('supercritical', 'degenerate')
+    """
+    if abs(l1) <= _DEGENERATE:
+        return "degenerate"
+    return "supercritical" if l1 < 0.0 else "subcritical"
+
+
 class Hopf(Detector):
     """Two eigenvalues have zero sum.
 
@@ -72,7 +89,7 @@ class Hopf(Detector):
             "omega": omega,
             "l1": form.l1,
             "c1": form.c1.real,
-            "criticality": "supercritical" if form.l1 < 0.0 else "subcritical",
+            "criticality": criticality(form.l1),
             "crossing_speed": form.mu_slope.real,
             "form": form,
         }

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from racs_bif.continuation.points import Point, Trace
 
 
+_NOTES = 2
+"""Notes of a trace that are shown; they tend to repeat themselves."""
+
+
 def columns(points: Sequence[Point]) -> dict[str, Any]:
     """Return the columns of a `Branch` that every kind of branch has."""
     width = max((len(p.spectrum) for p in points), default=0)
@@ -47,8 +51,10 @@ def stopped(trace: Trace) -> tuple[str, bool]:
     sentences = [end.value for end in ends]
     if len(ends) > 1:
         sentences = [f"At its beginning: {sentences[0]}", f"At its end: {sentences[1]}"]
-    if trace.message:
-        sentences.append(trace.message)
+    notes = trace.message.splitlines()
+    sentences += notes[:_NOTES]
+    if len(notes) > _NOTES:
+        sentences.append(f"(And {len(notes) - _NOTES} more notes like these.)")
     return " ".join(sentences), any(not end.complete for end in ends)
 
 

@@ -87,3 +87,13 @@ def test_a_branch_that_nothing_leads_to_is_found_once():
 def test_without_probes_only_what_is_connected_is_followed():
     diagram = rb.all_equilibria(rb.load_model("racs"), "u", (5, 12), probes=0)
     assert [branch.name for branch in diagram] == ["EQ1"]
+
+
+def test_a_vertical_branch_of_orbits_is_called_degenerate():
+    """Van der Pol's oscillator at mu = 0 is a linear centre: l1 = 0."""
+    model = rb.model_from_strings(
+        "vdp", {"x": "y", "y": "mu*(1-x**2)*y-x"}, parameters={"mu": -0.5}, guess={"x": 0.1}
+    )
+    hopf = rb.continue_equilibria(model, "mu", (-1, 1))["H1"]
+    assert hopf.parameters["mu"] == pytest.approx(0.0, abs=1e-10)
+    assert hopf.criticality == "degenerate"
