@@ -14,7 +14,7 @@ from racs_bif.cli.options import (
     check_span,
     open_system,
 )
-from racs_bif.cli.parser import Parser, choice, number
+from racs_bif.cli.parser import Parser, choice, count_or_none, number
 from racs_bif.errors import UsageError
 
 if TYPE_CHECKING:
@@ -27,15 +27,18 @@ if TYPE_CHECKING:
     from racs_bif.results.branch import Branch
     from racs_bif.results.special import SpecialPoint
 
-HELP: Final = "a curve of Hopf points, folds or branch points in two parameters"
+HELP: Final = "a curve of special equilibria or cycles in two parameters"
 DESCRIPTION: Final = (
     "Find a special point as PARAM1 moves through its span, then follow it in the plane of PARAM1 "
-    "and PARAM2, with its points of codimension two (BT, GH, ZH, HH, CP). A model with fractional "
-    "elements is followed on its exact characteristic equation unless told otherwise. Writes "
-    "branches.nc, diagram.png, diagram.svg and summary.json."
+    "and PARAM2, with its points of codimension two. hopf, fold and bp are equilibria (BT, GH, ZH, "
+    "HH, CP); with fractional elements they are followed on the exact characteristic equation "
+    "unless told otherwise. lpc, pd and ns are cycles, followed by collocation on the realisation "
+    "(CPC, GPD, CH, R1 to R4, LPPD, LPNS, PDNS, NSNS). Writes branches.nc, diagram.png, "
+    "diagram.svg and summary.json."
 )
 FILES: Final = ("branches.nc", "diagram.png", "diagram.svg", "summary.json")
-KINDS: Final = {"hopf": "H", "fold": "LP", "bp": "BP"}
+KINDS: Final = {"hopf": "H", "fold": "LP", "bp": "BP", "lpc": "LPC", "pd": "PD", "ns": "NS"}
+CYCLES: Final = ("lpc", "pd", "ns")
 
 
 class Spans(argparse.Action):
@@ -76,12 +79,20 @@ def configure(parser: Parser) -> None:
         "--point", metavar="NAME", help="where to start if there are several, for example H2"
     )
     parser.add_argument(
+        "--branches",
+        type=count_or_none,
+        default=0,
+        metavar="N",
+        help="how many times orbits are followed on from period doublings and branch points in the "
+        "search for a cycle to start from; default 0",
+    )
+    parser.add_argument(
         "--through",
         action="append",
         default=[],
         metavar="POINT[:KIND]",
         help="follow another curve through a point of codimension two as well, for example "
-        "BT1:fold, HH1:hopf2; by default the kind that the point was not found on",
+        "BT1:fold, HH1:hopf2, GH1:lpc; by default the kind that the point was not found on",
     )
     parser.add_argument(
         "--operator",
@@ -102,6 +113,7 @@ def configure(parser: Parser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Find the point, follow its curve, write the files and tell what was found."""
+    from racs_bif.cli.curve_start import starting_point
     from racs_bif.cli.terminal import progress
     from racs_bif.results.atomic import check_writable
     from racs_bif.verbs.curves import continue_curve
@@ -115,9 +127,10 @@ def run(arguments: Namespace) -> int:
             raise UsageError(msg)
         check_span(*arguments.spans[name])
     with progress(arguments) as task:
-        start = _start(system, arguments, task)
-        operator = arguments.operator or ("exact" if system.fractional else "realised")
         spans = {name: arguments.spans.get(name) or default_span(system, name) for name in names}
+        start = starting_point(system, arguments, KINDS[arguments.kind], spans[names[0]], task)
+        exact = system.fractional and arguments.kind not in CYCLES
+        operator = arguments.operator or ("exact" if exact else "realised")
         report = task(f"{arguments.kind} curve from {start.name}", spans[names[1]])
         curve = continue_curve(
             start, names, spans, kind=arguments.kind, operator=operator, progress=report
@@ -152,30 +165,6 @@ def default_span(system: System, name: str) -> tuple[float, float]:
     ends = sorted((0.1 * value, 10.0 * value))
     margin = 1e-3 * abs(value)
     return max(ends[0], low + margin), min(ends[1], high - margin)
-
-
-def _start(system: System, arguments: Namespace, task: Any) -> SpecialPoint:  # noqa: ANN401
-    """Return the special point to start from."""
-    from racs_bif.verbs.all_equilibria import all_equilibria
-
-    name, label = arguments.first, KINDS[arguments.kind]
-    span = arguments.spans.get(name) or default_span(system, name)
-    probes = 0 if arguments.point is None else 6
-    report = task("equilibria", span)
-    found = all_equilibria(system, name, span, probes=probes, progress=report)
-    there = [p for p in found.special_points if p.label == label]
-    if not there and arguments.point is None:
-        found = all_equilibria(system, name, span, progress=report)
-        there = [p for p in found.special_points if p.label == label]
-    for point in there:
-        if arguments.point in {None, point.name}:
-            return point
-    names = ", ".join(p.name for p in there)
-    if not there:
-        msg = f"no {label} as {name} goes from {span[0]:g} to {span[1]:g}; give another --span"
-    else:
-        msg = f"no point '{arguments.point}'; there are: {names}"
-    raise UsageError(msg)
 
 
 def _codimension_two(curves: list[Branch], name: str) -> SpecialPoint:
@@ -243,7 +232,8 @@ def _tell_curve(curve: Branch, screen: Console) -> None:
     screen.print(f"\n{curve.name}: {curve.method}, {len(curve)} points. {curve.stopped}")
     table = Table(box=None, pad_edge=False, collapse_padding=True)
     table.add_column("", no_wrap=True)
-    for title in (a, b, "rad/s", "l1"):
+    shown = _shown(curve)
+    for title in (a, b, *shown.values()):
         table.add_column(title, justify="right", no_wrap=True)
     table.add_column("")
     rows = [("first", 0, ""), ("last", len(curve) - 1, "")]
@@ -260,10 +250,17 @@ def _tell_curve(curve: Branch, screen: Console) -> None:
             starts = p.data.get("starts")
             rows.append((p.name, p.index, f"{p.title}; starts {starts}" if starts else p.title))
     for name, k, told in rows:
-        numbers = [*curve.values[k], *(_at(curve, m, k) for m in ("omega", "l1"))]
-        shown = ["-" if math.isnan(n) else f"{n:.7g}" for n in numbers]
-        table.add_row(name, *shown, told)
+        numbers = [*curve.values[k], *(_at(curve, measure, k) for measure in shown)]
+        table.add_row(name, *("-" if math.isnan(n) else f"{n:.7g}" for n in numbers), told)
     screen.print(table)
+
+
+def _shown(curve: Branch) -> dict[str, str]:
+    """Return the measures of a curve that its table shows, and their headings."""
+    if "period" not in curve.measures:
+        return {"omega": "rad/s", "l1": "l1"}
+    others = {"angle": "angle, rad", "c": "c", "Re d": "Re d"}
+    return {"period": "period, s"} | {k: v for k, v in others.items() if k in curve.measures}
 
 
 def _at(curve: Branch, measure: str, k: int) -> float:

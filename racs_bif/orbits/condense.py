@@ -69,6 +69,10 @@ class Ring:
             new_after = np.concatenate((new_after, after[-1:]))
         return new_before, new_after
 
+    def halves(self) -> list[int]:
+        """Return how many points every halving eliminates."""
+        return [len(level.left) for level in self._levels]
+
     def sign(self) -> float:
         """Return the sign that the condensation gives the determinant of the ring.
 
@@ -100,18 +104,21 @@ class Ring:
         kept = []
         for level in self._levels:
             half, size = level.left.shape[:2]
-            pairs = rhs[: 2 * half].reshape(half, 2 * size, -1)
+            pairs = rhs[: 2 * half].reshape(half, 2 * size, rhs.shape[-1])
             turned = level.turn @ pairs
             kept.append(turned[:, :size])
             rhs = np.concatenate((turned[:, size:], rhs[-1:])) if level.odd else turned[:, size:]
         return rhs[0], kept
 
-    def expand(self, first: Array, kept: list[Array]) -> Array:
-        """Return all points (M, n, k) from the first one (n, k) and what `reduce` kept."""
-        points = first[None]
+    def expand(self, first: Array, kept: list[Array], last: Array | None = None) -> Array:
+        """Return all points (M, n, k) from the first one (n, k) and what `reduce` kept.
+
+        The point after the last block is the first one, or `last` (n, k) where the ring is open.
+        """
+        points, end = first[None], (first if last is None else last)[None]
         for level, tops in zip(reversed(self._levels), reversed(kept), strict=True):
             half = len(tops)
-            following = np.concatenate((points[1:], first[None]))
+            following = np.concatenate((points[1:], end))
             between = level.inverse @ (
                 tops - level.left @ points[:half] - level.right @ following[:half]
             )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from racs_bif.errors import ConvergenceError
 from racs_bif.orbits.checked import CheckedField
@@ -26,6 +27,10 @@ _SMALL: Final = 8
 """States from which on it is faster than the dense one (measured)."""
 
 
+Active = float | NDArray[np.float64]
+"""One active parameter, or an array (a,) of them."""
+
+
 class Collocated:
     """A curve with its period and parameter, and f along it.
 
@@ -33,15 +38,17 @@ class Collocated:
     ----------
     curve : Piecewise
         The curve.
-    period, active : float
-        Period and active parameter.
+    period : float
+        Period.
+    active : float or array (a,)
+        Active parameters.
     tau : array (N,)
         Lengths of the intervals in time.
     stages, rates : array (N, m, n)
         Values at the Gauss points and f there.
     """
 
-    def __init__(self, curve: Piecewise, period: float, active: float, rates: Array) -> None:
+    def __init__(self, curve: Piecewise, period: float, active: Active, rates: Array) -> None:
         self.curve, self.period, self.active = curve, period, active
         self.tau = period * curve.mesh.widths
         self.rates = rates
@@ -72,7 +79,7 @@ class Equations:
         self.checked = CheckedField(field)
         self._field, self._path = field, path
 
-    def collocated(self, curve: Piecewise, period: float, active: float) -> Collocated:
+    def collocated(self, curve: Piecewise, period: float, active: Active) -> Collocated:
         """Return the equations at a curve.
 
         Raises
@@ -82,7 +89,8 @@ class Equations:
         ModelError
             If the right-hand side raises or returns a wrong shape.
         """
-        if not (np.isfinite(period) and np.isfinite(active) and np.isfinite(curve.nodes.sum())):
+        known = np.isfinite(period) and np.all(np.isfinite(active))
+        if not (known and np.isfinite(curve.nodes.sum())):
             raise ConvergenceError("the orbit became infinite")
         if period <= 0.0:
             raise ConvergenceError(f"the period became {period:.6g}, which is not positive")
@@ -90,17 +98,20 @@ class Equations:
         rates = self.checked.rates(curve.stages(), self._path.vector(active), times)
         return Collocated(curve, period, active, rates)
 
-    def rates(self, points: Array, active: float) -> Array:
+    def rates(self, points: Array, active: Active) -> Array:
         """Return f at points (N, n)."""
         p = self._path.vector(active)
         return self.checked.rates(points[:, None, :], p, np.zeros(len(points)))[:, 0]
 
     def columns(self, at: Collocated) -> Array:
-        """Return the derivatives (2, N, m, n) of tau f by period and parameter."""
-        p, dp = self._path.vector(at.active), self._path.direction(at.active)
-        by_active = self.checked.by_parameter(at.curve.stages(), p, dp, at.times)
-        widths = at.curve.mesh.widths[:, None, None]
-        return np.stack((widths * at.rates, at.tau[:, None, None] * by_active))
+        """Return the derivatives (1 + a, N, m, n) of tau f by period and parameters."""
+        p, stages = self._path.vector(at.active), at.curve.stages()
+        columns = [at.curve.mesh.widths[:, None, None] * at.rates]
+        for k in range(len(self._path.names)):
+            dp = self._path.direction(at.active, k)
+            by_active = self.checked.by_parameter(stages, p, dp, at.times)
+            columns.append(at.tau[:, None, None] * by_active)
+        return np.stack(columns)
 
     def jacobians(self, at: Collocated) -> Array:
         """Return f_x at the Gauss points (N, m, n, n)."""

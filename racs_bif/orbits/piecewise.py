@@ -28,17 +28,23 @@ class Piecewise:
     nodes : array (N, m, n)
         Values at the first m of the m + 1 equidistant nodes of the intervals; the last is the
         first of the next interval.
+    end : array (n,), optional
+        Value at the end, by default that at the beginning.
     """
 
-    def __init__(self, mesh: Mesh, nodes: Array) -> None:
+    def __init__(self, mesh: Mesh, nodes: Array, end: Array | None = None) -> None:
         self.mesh = mesh
         self.nodes = nodes
+        self._end = end
         self.gauss: Gauss = gauss(nodes.shape[1])
 
     @cached_property
     def closed(self) -> Array:
         """Values at all nodes of the intervals, (N, m + 1, n)."""
-        return closed(self.nodes)
+        nodes = closed(self.nodes)
+        if self._end is not None:
+            nodes[-1, -1] = self._end
+        return nodes
 
     @cached_property
     def powers(self) -> Array:

@@ -18,7 +18,15 @@ if TYPE_CHECKING:
 
     from racs_bif.results.branch import Branch
 
-_LOOKS: Final = {"HC": ("Hopf curve", BLUE), "LC": ("fold curve", BLACK)}
+_LOOKS: Final = {
+    "HC": ("Hopf curve", BLUE, "-"),
+    "LC": ("fold curve", BLACK, "-"),
+    "BC": ("branch points", VERMILION, "-"),
+    "LPCC": ("folds of cycles", BLACK, "--"),
+    "PDC": ("period doublings", VERMILION, "--"),
+    "NSC": ("Neimark-Sacker points", BLUE, "-."),
+}
+_OTHER: Final = ("curve", VERMILION, "-")
 _UNMARKED: Final = frozenset({"EP", "MX", "UZ"})
 
 
@@ -77,10 +85,10 @@ def _draw(curves: Sequence[Branch], ax: Axes) -> None:
 
     labels = []
     for curve in curves:
-        title, colour = _LOOKS.get(curve.name.rstrip("0123456789"), ("curve", VERMILION))
+        title, colour, pattern = _LOOKS.get(curve.name.rstrip("0123456789"), _OTHER)
         x, y = curve.values[:, 0], curve.values[:, 1]
         neutral = np.nan_to_num(curve.measures.get("neutral", np.zeros(len(x)))) > 0.5
-        ax.plot(*_where(x, y, ~neutral), color=colour, lw=1.2, label=title)
+        ax.plot(*_where(x, y, ~neutral), color=colour, ls=pattern, lw=1.2, label=title)
         if neutral.any():
             ax.plot(*_where(x, y, neutral), color=colour, ls=":", lw=1.0, label="neutral saddles")
         for point in curve.special:

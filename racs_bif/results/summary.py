@@ -120,8 +120,12 @@ def to_text(summary: Mapping[str, Json]) -> str:
 
 
 def curve_points(curve: Branch) -> list[Json]:
-    """Return the points of a curve in two parameters: where, frequency, l1 and other measures."""
-    names = [name for name in ("omega", "l1", "neutral") if name in curve.measures]
+    """Return the points of a curve in two parameters: where, frequency, l1 and other measures.
+
+    Those of a curve of cycles have a period instead, and the coefficient of their normal form.
+    """
+    known = ("omega", "l1", "neutral", "period", "angle", "c", "Re d")
+    names = [name for name in known if name in curve.measures]
     points: list[Json] = []
     for k, label in enumerate(curve.labels):
         point: dict[str, object] = {"curve": curve.name, "parameters": _parameters(curve, k)}

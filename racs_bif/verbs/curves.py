@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -11,24 +11,20 @@ import numpy as np
 from racs_bif.continuation.settings import StepSettings
 from racs_bif.continuation.trace import trace
 from racs_bif.equilibria.bogdanov_takens import BogdanovTakensOnFold, BogdanovTakensOnHopf
-from racs_bif.equilibria.branch_point_curve import BranchPointCurve
 from racs_bif.equilibria.cusp import Cusp
 from racs_bif.equilibria.double_hopf import DoubleHopf
-from racs_bif.equilibria.exact_fold_curve import ExactFoldCurve
-from racs_bif.equilibria.exact_hopf_curve import ExactHopfCurve
-from racs_bif.equilibria.fold_curve import FoldCurve
 from racs_bif.equilibria.generalised_hopf import GeneralisedHopf
-from racs_bif.equilibria.hopf_curve import HopfCurve
 from racs_bif.equilibria.zero_hopf import PairOnFold, ZeroOnHopf
 from racs_bif.errors import UsageError
-from racs_bif.fractional.static import StaticField
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.branch import Branch
 from racs_bif.results.provenance import describe
 from racs_bif.results.special import SpecialPoint
 from racs_bif.verbs import assemble
-from racs_bif.verbs.equilibria import check_span, outputs_of
-from racs_bif.verbs.origin import Origin
+from racs_bif.verbs.curve_start import CurveStart, frequency_of
+from racs_bif.verbs.cycle_curves import STARTS, follow_cycles, kind_of, starts_cycles
+from racs_bif.verbs.equilibria import check_span
+from racs_bif.verbs.origin import Origin, origin_of
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Point, Trace
@@ -36,7 +32,7 @@ if TYPE_CHECKING:
     from racs_bif.continuation.problem import Detector
     from racs_bif.equilibria.curve_problem import CurveProblem, Span
     from racs_bif.fractional.system import System
-    from racs_bif.symbolic.field import Array
+    from racs_bif.orbits.collocation_settings import CollocationSettings
 
 _KINDS: Final = {
     "hopf": ("H", "GH", "BT", "ZH", "HH"),
@@ -52,37 +48,46 @@ _OPERATORS: Final = ("realised", "exact")
 
 
 @single_threaded
-def continue_curve(
+def continue_curve(  # noqa: PLR0913 - each is one choice of the user's
     point: SpecialPoint,
     parameters: tuple[str, str],
     spans: tuple[Span | None, Span | None] | Mapping[str, Span] | None = None,
     *,
     kind: str | None = None,
     operator: str = "realised",
+    size: float | None = None,
     settings: StepSettings | None = None,
+    orbit_settings: CollocationSettings | None = None,
     progress: Callable[[Point], None] | None = None,
 ) -> Branch:
-    """Follow a special equilibrium in two parameters.
+    """Follow a special equilibrium or a special cycle in two parameters.
 
     Codimension-two points are located: CP, BT and ZH on a fold curve; BT, GH, ZH and HH on a Hopf
     curve. Beyond BT a Hopf curve goes on as a curve of neutral saddles, measure ``neutral`` 1.
+    On curves of cycles, which are followed by collocation on the realisation: CPC, R1, LPPD and
+    LPNS on one of folds (lpc); GPD, R2, LPPD and PDNS on one of period doublings (pd); R1 to R4,
+    CH, LPNS, PDNS and NSNS on one of Neimark-Sacker points (ns).
 
     Parameters
     ----------
     point : SpecialPoint
-        Where to start, a point of `continue_equilibria` or of another curve.
+        Where to start, a point of `continue_equilibria`, `continue_orbits` or of another curve.
     parameters : (str, str)
         Active parameters, base or derived.
     spans : pair or mapping of (float, float), optional
         Their intervals, SI. Where left out: that of the branch that the point lies on, or a tenth
         to ten times the value at the point, within the model's validity.
-    kind : {"hopf", "fold", "bp"}, optional
+    kind : {"hopf", "fold", "bp", "lpc", "pd", "ns"}, optional
         Which curve; by default the one of the point's label, and at a point where two meet the
         one that it was not found on. ``"hopf2"`` is the other Hopf curve through a double Hopf
-        point.
+        point. GH starts "lpc", ZH and HH start "ns", at a cycle that their normal form predicts.
     operator : {"realised", "exact"}
-        What a model with fractional elements is followed on: its realisation, or the exact
-        characteristic matrix.
+        What equilibria of a model with fractional elements are followed on: its realisation, or
+        the exact characteristic matrix.
+    size : float, optional
+        Amplitude of the cycle that GH, ZH or HH predicts, in the units of the states.
+    orbit_settings : CollocationSettings, optional
+        How cycles are resolved.
     settings : StepSettings, optional
         Step control.
     progress : callable, optional
@@ -102,33 +107,31 @@ def continue_curve(
     ConvergenceError
         If no solution is found at the start.
     """
-    origin, chosen = origin_of(point), _kind(point, kind)
     if operator not in _OPERATORS:
         msg = f"unknown operator '{operator}'; there are: {', '.join(_OPERATORS)}"
         raise UsageError(msg)
+    origin = origin_of(point)
     system = replace(origin.system, values=origin.parameters)
+    if starts_cycles(point, kind):
+        followed = kind_of(point, kind)
+        plane = (parameters[0], parameters[1]), _spans(system, origin, parameters, spans)
+        return follow_cycles(
+            origin,
+            point,
+            followed,
+            plane,
+            size=size,
+            settings=settings,
+            orbit_settings=orbit_settings,
+            progress=progress,
+        )
+    chosen = _kind(point, kind)
     first, second = _spans(system, origin, parameters, spans)
-    start = _Start(system, origin.equilibrium, parameters, first, _frequency(point, kind))
+    start = CurveStart(system, origin.equilibrium, parameters, first, frequency_of(point, kind))
     problem, z = start.problem(chosen, operator)
     detectors = _detectors(chosen, operator)
     found = trace(problem, z, second, detectors, settings or _SETTINGS, progress=progress)
     return _branch(system, problem, found, second)
-
-
-def origin_of(point: SpecialPoint) -> Origin:
-    """Return where a point came from.
-
-    Raises
-    ------
-    UsageError
-        If it was loaded from a file, where that is not kept.
-    """
-    if not isinstance(point.origin, Origin):
-        msg = (
-            f"{point.name} was loaded from a file; compute its branch again to start a curve there"
-        )
-        raise UsageError(msg)
-    return point.origin
 
 
 def _kind(point: SpecialPoint, wanted: str | None) -> str:
@@ -141,8 +144,9 @@ def _kind(point: SpecialPoint, wanted: str | None) -> str:
     """
     possible = [kind for kind, labels in _KINDS.items() if point.label in labels]
     if not possible:
-        labels = ", ".join(sorted({label for labels in _KINDS.values() for label in labels}))
-        msg = f"no curve of equilibria starts at {point.name} ({point.title}); these can: {labels}"
+        every = [*_KINDS.values(), *STARTS.values()]
+        labels = ", ".join(sorted({label for labels in every for label in labels}))
+        msg = f"no curve starts at {point.name} ({point.title}); these can: {labels}"
         raise UsageError(msg)
     if wanted is None:
         own = getattr(origin_of(point).problem, "kind", None)
@@ -150,23 +154,13 @@ def _kind(point: SpecialPoint, wanted: str | None) -> str:
         return (others or possible)[0]
     plain = wanted.removesuffix("2")
     if plain not in _KINDS:
-        msg = f"unknown kind of curve '{wanted}'; there are: {', '.join(_KINDS)}"
+        msg = f"unknown kind of curve '{wanted}'; there are: {', '.join((*_KINDS, *STARTS))}"
         raise UsageError(msg)
     if plain not in possible or (wanted != plain and point.label != "HH"):
         can = ", ".join(("HH",) if wanted == "hopf2" else _KINDS[plain])
         msg = f"a {wanted} curve cannot start at {point.name} ({point.title}); these can: {can}"
         raise UsageError(msg)
     return plain
-
-
-def _frequency(point: SpecialPoint, kind: str | None) -> float:
-    """Return the frequency of the pair to follow; zero at BT and where there is none.
-
-    From a double Hopf point the default is the pair of the other curve.
-    """
-    if point.label == "HH" and kind in {None, "hopf2"}:
-        return float(point.omega2)  # type: ignore[arg-type] # a number
-    return point.omega if "omega" in point.data else 0.0
 
 
 def _spans(
@@ -209,54 +203,6 @@ def _guessed(system: System, name: str) -> Span:
     return max(low, valid[0] + margin), min(high, valid[1] - margin)
 
 
-@dataclass(frozen=True)
-class _Start:
-    """Where a curve starts."""
-
-    system: System
-    x: Array
-    parameters: tuple[str, str]
-    span: Span
-    omega: float
-
-    def problem(self, kind: str, operator: str) -> tuple[CurveProblem, Array]:
-        """Return the problem and its first point."""
-        system, omega = self.system, self.omega
-        path = system.path(*self.parameters)
-        values = [system.parameters[name] for name in self.parameters]
-        field, own = system.field, len(system.states)
-        common = (path, self.span)
-        if kind == "hopf" and operator == "realised":
-            z = np.concatenate([self.x, [omega**2], values])
-            return HopfCurve(field, *common, own, _outputs(system)), z
-        if kind == "fold" and operator == "realised":
-            z = np.concatenate([self.x, values])
-            return FoldCurve(field, *common, own, _outputs(system)), z
-        static, X = StaticField(system.exact), system.exact_point(self.x, system.values)
-        if kind == "hopf":
-            if not omega > 0.0:
-                msg = "the exact Hopf curve ends at omega = 0; follow the realised one from there"
-                raise UsageError(msg)
-            z = np.concatenate([X, [omega], values])
-            return ExactHopfCurve(static, field, *common, _outputs(system)), z
-        if kind == "fold":
-            return ExactFoldCurve(static, field, *common, _outputs(system)), np.append(X, values)
-        z = np.concatenate([X, [0.0], values])
-        return BranchPointCurve(static, field, *common, _outputs(system)), z
-
-
-def start_of(point: SpecialPoint, kind: str) -> tuple[CurveProblem, Array]:
-    """Return the problem of a curve through a point of another, and the point on it."""
-    origin = origin_of(point)
-    system = replace(origin.system, values=origin.parameters)
-    names = origin.problem.path.names  # type: ignore[attr-defined] # as all of ours have
-    value = system.parameters[names[0]]
-    reach = max(abs(value), _REACH)
-    span = value - reach, value + reach
-    start = _Start(system, origin.equilibrium, names, span, _frequency(point, None))
-    return start.problem(kind, "realised")
-
-
 def _detectors(kind: str, operator: str) -> list[Detector]:
     if kind == "hopf":
         further = [BogdanovTakensOnHopf()] if operator == "realised" else []
@@ -264,10 +210,6 @@ def _detectors(kind: str, operator: str) -> list[Detector]:
     if kind == "fold":
         return [Cusp(), BogdanovTakensOnFold(), PairOnFold()]
     return []
-
-
-def _outputs(system: System) -> Callable[[Array, Array], dict[str, float]] | None:
-    return outputs_of(system) if system.outputs else None
 
 
 def _branch(system: System, problem: CurveProblem, found: Trace, span: Span) -> Branch:

@@ -11,7 +11,8 @@ from racs_bif.equilibria.predictors import (
     torus_at_zero_hopf,
 )
 from racs_bif.errors import UsageError
-from racs_bif.verbs.curves import origin_of, start_of
+from racs_bif.verbs.curve_start import start_of
+from racs_bif.verbs.origin import origin_of
 
 if TYPE_CHECKING:
     from racs_bif.equilibria.orbit_guess import HomoclinicGuess, OrbitGuess

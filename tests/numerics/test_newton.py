@@ -21,6 +21,9 @@ class Circle:
     def jacobian(self, z):
         return 2 * z[None, :]
 
+    def terms(self, z):
+        return abs(self.jacobian(z)) @ abs(z)
+
     def bordered(self, z, row):
         return factorise(np.vstack([self.jacobian(z), row]))
 

@@ -1,0 +1,1 @@
+"""Curves of special cycles in two parameters."""
