@@ -460,4 +460,5 @@ def model(*, variant: str = "paper") -> Model:
         variants={name: row.summary for name, row in VARIANTS.items()},
         notes=(SIGNS, *NOTES),
         band=BAND,
+        inputs=("delta_f",),
     )
