@@ -14,7 +14,7 @@ import math
 from contextlib import contextmanager
 from functools import lru_cache
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NoReturn, cast
 
 from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.symbolic.graph import UNARY
@@ -191,6 +191,11 @@ def _absorb(a: Ball | float, b: Ball | float) -> Ball:
     return Ball(raw if raw == 0 else _raw(a) * raw)
 
 
+def _not_enclosed(*_: object) -> NoReturn:
+    msg = "the equations call a Python function, of which nothing can be proved; write them so that"
+    raise UsageError(f"{msg} they can be recorded, or as strings")
+
+
 BALLS = SimpleNamespace(
     **{name: _unary(name) for name in UNARY},
     pow=_pow,
@@ -199,6 +204,7 @@ BALLS = SimpleNamespace(
     both=lambda a, b: a and b,
     either=lambda a, b: a or b,
     negated=lambda a: not a,
+    call=_not_enclosed,
 )
 """Elementary functions of balls."""
 

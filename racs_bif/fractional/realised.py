@@ -38,6 +38,7 @@ class RealisedField(VectorField):
         self.parameters = tuple(p.name for p in compiled.parameters)
         self._ny = len(compiled.states)
         self._ne = len(compiled.elements)
+        self.stateless = not compiled.states
         self._key: bytes | None = None
         self._kept: Frame | None = None
         self._slopes: dict[bytes, tuple[Filter, ...] | None] = {}
@@ -196,6 +197,31 @@ class RealisedField(VectorField):
         core = forms.reshape(size, count, size).transpose(1, 0, 2)
         return np.asarray(frame.bank.left @ core @ R)
 
+    def telling(self, x: Array, p: Array, v: Vectors, own: int) -> Vectors:
+        """Return the part of a direction (n,) that counts: states, or outputs where there are none.
+
+        In a model that is made of elements only their outputs are what states are elsewhere.
+        """
+        return self.outputs_along(x, p, v) if self.stateless else v[:own]
+
+    def own_outputs(self, x: Array, p: Array) -> dict[str, Array]:
+        """Return the outputs of all elements at N points x (n, N), each (N,), by name."""
+        return dict(zip(self.compiled.elements, self.outputs(x, p), strict=True))
+
+    def outputs_along(self, x: Array, p: Array, v: Vectors) -> Vectors:
+        """Return the derivatives (ne,) of the elements' outputs along v (n,) at one point."""
+        frame, ny = self.frame(p), self._ny
+        V = frame.bank.gather(v)
+        jacobian = self.compiled.core_jacobian(frame.bank.gather(x), frame.P)
+        return np.asarray(V[ny:] + frame.P[len(p) :] * (jacobian @ V)[ny:])
+
+    def outputs(self, x: Array, p: Array) -> Array:
+        """Return the elements' outputs (ne,) of states (n,), or (ne, N) of states (n, N)."""
+        frame, ny = self.frame(p), self._ny
+        X = frame.bank.gather(x)
+        through = (frame.P[len(p) :] * self.compiled.core(X, frame.P)[ny:].T).T
+        return np.asarray(X[ny:] + through)
+
     def series(self, x: Coefficients, p: Array, algebra: Algebra) -> Coefficients:
         """Return the Taylor coefficients (n, len(algebra)) of f at a polynomial x of that shape."""
         frame = self.frame(p)
@@ -230,6 +256,34 @@ class RealisedField(VectorField):
         result = frame.bank.spread(value)
         result[self._ny :] += diagonal([s.A for s in slopes]) @ v[self._ny :]
         result[self._ny :] += diagonal([s.B[:, None] for s in slopes]) @ (jacobian @ V)[self._ny :]
+        return np.asarray(result)
+
+    def f_xx_along(self, x: Array, p: Array, u: Vectors, v: Vectors) -> Vectors:
+        """Return B(u, v) at N points x (n, N), one pair of directions (n, N) for each, (n, N)."""
+        return self.f_xx(x, p, u, v)
+
+    def f_xxx_along(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:
+        """Return C(u, v, w) at N points x (n, N), three directions (n, N) for each, (n, N)."""
+        return self.f_xxx(x, p, u, v, w)
+
+    def f_xp_along(self, x: Array, p: Array, v: Vectors, dp: Array) -> Vectors:
+        """Return `f_xp` at N points x (n, N), one direction v (n, N) for each, as (n, N)."""
+        frame, slopes, core, ny = self.frame(p), self._filter_slopes(p, dp), self.compiled, self._ny
+        R = frame.bank.gather
+        X, V = R(x), R(v)
+        value = core.core_xp(X, frame.P, V, _like(self._full_direction(dp, slopes), v))
+        if slopes is None:
+            return frame.bank.spread(value)
+        C_p = diagonal([s.C[None, :] for s in slopes])
+        jacobians = core.core_jacobian(X, frame.P)
+        moved = np.zeros_like(X)
+        moved[ny:] = C_p @ x[ny:]
+        value = value + core.core_xx(X, frame.P, V, moved)
+        value = value + np.einsum("Nij,jN->iN", jacobians[:, :, ny:], C_p @ v[ny:])
+        result = frame.bank.spread(value)
+        result[ny:] += diagonal([s.A for s in slopes]) @ v[ny:]
+        inputs = np.einsum("Nij,jN->iN", jacobians[:, ny:], V)
+        result[ny:] += diagonal([s.B[:, None] for s in slopes]) @ inputs
         return np.asarray(result)
 
     def _filter_slopes(self, p: Array, dp: Array) -> tuple[Filter, ...] | None:

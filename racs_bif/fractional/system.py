@@ -70,6 +70,14 @@ class System:
         return self.compiled.states
 
     @property
+    def own(self) -> tuple[str, ...]:
+        """Names of what results show as the model's state.
+
+        Its states; the outputs of its elements where it is made of elements only.
+        """
+        return self.states or self.compiled.elements
+
+    @property
     def state_units(self) -> dict[str, str]:
         """Units of states and outputs."""
         return dict(self.compiled.meta["units"])
@@ -120,6 +128,12 @@ class System:
             name=self.settings.name, states=len(frame.bank.A), band=self.settings.band, error=error
         )
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from racs_bif.symbolic.shown import model_card
+
+        return model_card(self.compiled.meta, self.parameters)
+
     def path(self, *names: str) -> CompiledPath:
         """Return the path along active parameters."""
         return CompiledPath(self.compiled, names, self.values)
@@ -167,10 +181,27 @@ class System:
         try:
             X = self.exact.equilibrium(X, p)
         except ConvergenceError as error:
-            msg = f"model '{self.name}': {error}"
+            msg = f"model '{self.name}': {self._degenerate(X, p) or error}"
             raise ConvergenceError(msg) from None
         ny = len(self.states)
         return self.field.rest(X[:ny], X[ny:], p)
+
+    def _degenerate(self, X: Array, p: Array) -> str:
+        """Say what is wrong with a guess at which Newton's method has no direction, if it is so."""
+        jacobian = self.exact.jacobian(X, p)
+        if not np.all(np.isfinite(jacobian)) or np.linalg.matrix_rank(jacobian) == len(X):
+            return ""
+        if not np.any(jacobian):
+            what = "the equations do not change with the states at the guess (their Jacobian is 0)"
+        elif not np.any(self.exact.residual(X, p)):
+            what = "the guess is an equilibrium with a singular Jacobian, so maybe not isolated"
+        else:
+            return ""
+        return f"{what}; give another guess or value, or remove what is conserved"
+
+    def own_state(self, x: Array, p: Array) -> Array:
+        """Return what `own` names, of realised states x (n,), or (n, N) for N points."""
+        return x[: len(self.states)] if self.states else self.field.outputs(x, p)
 
     def exact_point(self, x: Array, p: Array) -> Array:
         """Return X = (y, w) of realised states x (n,) at rest."""

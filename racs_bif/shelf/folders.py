@@ -31,17 +31,20 @@ class Kind:
     ----------
     one : str
         What people call one of them.
+    endings : tuple of str
+        How the name of such a file may end where it is given as a path.
     function : str
         The function that such a file has to define.
     """
 
     one: str
+    endings: tuple[str, ...]
     function: str
 
 
 KINDS: Final = {
-    "models": Kind(one="model", function="model"),
-    "analyses": Kind(one="analysis", function="run"),
+    "models": Kind(one="model", endings=(".py", ".toml"), function="model"),
+    "analyses": Kind(one="analysis", endings=(".py",), function="run"),
 }
 """The kinds of files, by the name of their folders."""
 
@@ -97,7 +100,7 @@ def find(kind: str, name: str) -> Path:
     kind : {"models", "analyses"}
         The kind of file.
     name : str
-        A name on the shelf, or a path that ends in ``.py``.
+        A name on the shelf, or a path that ends in ``.py``, for a model also in ``.toml``.
 
     Raises
     ------
@@ -105,7 +108,7 @@ def find(kind: str, name: str) -> Path:
         If there is no such name or file, or if the name is found twice.
     """
     files = _files(kind)
-    if name.endswith(".py"):
+    if is_file_name(kind, name):
         path = Path(name).expanduser().resolve()
         if path.is_file():
             return path
@@ -119,6 +122,11 @@ def find(kind: str, name: str) -> Path:
         msg = f"unknown {KINDS[kind].one} '{name}': {nearest(name, sorted(files))}{lost}"
         raise UsageError(msg)
     return _only(kind, name, files[name])
+
+
+def is_file_name(kind: str, name: str) -> bool:
+    """Say whether a name is the path of a file and not a name on the shelf."""
+    return name.endswith(KINDS[kind].endings)
 
 
 def _entries() -> list[Path]:

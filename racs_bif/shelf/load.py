@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import functools
 import hashlib
 from dataclasses import replace
@@ -15,8 +14,10 @@ from racs_bif.equilibria.calibrate import calibrate
 from racs_bif.errors import ModelError, RacsBifError, UsageError, nearest
 from racs_bif.fractional.realisations import choose_realisation
 from racs_bif.fractional.system import System
-from racs_bif.shelf.folders import find
+from racs_bif.shelf.closed import is_closed
+from racs_bif.shelf.folders import find, is_file_name
 from racs_bif.shelf.modules import complaint, load_module
+from racs_bif.shelf.tables import model_from_toml
 from racs_bif.symbolic import cache
 from racs_bif.symbolic.compiled import CompiledModel, compile_model, read_sources, write_sources
 from racs_bif.symbolic.model import Calibration, Model, Parameter
@@ -26,31 +27,6 @@ if TYPE_CHECKING:
 
     from racs_bif.fractional.filter import Realisation
     from racs_bif.symbolic.field import Array
-
-_CLOSED = {
-    "__future__",
-    "collections",
-    "dataclasses",
-    "enum",
-    "functools",
-    "itertools",
-    "math",
-    "sympy",
-    "typing",
-}
-"""Modules that do not change between two runs of the same versions."""
-_OWN = {"racs_bif.errors", "racs_bif.symbolic"}
-"""Parts of this package that read no other files."""
-_OWN_NAMES = {
-    *("Calibration", "DerivedParameter", "FractionalElement", "Model", "Parameter"),
-    "model_from_strings",
-}
-"""Public names of this package that read no other files."""
-_OPEN_NAMES = {
-    *("open", "exec", "eval", "compile", "input", "getattr", "globals", "vars"),
-    *("__import__", "__builtins__", "__loader__", "__spec__"),
-}
-"""Names by which a file can reach what is not in its text."""
 
 
 def load_model(
@@ -67,7 +43,7 @@ def load_model(
     Parameters
     ----------
     name : str
-        A model on the shelf, or a path ending in ``.py``.
+        A model on the shelf, or a path ending in ``.py`` or ``.toml``.
     parameters : mapping of str to float, optional
         Values, SI, of base or derived parameters other than the defaults.
     variant : str, optional
@@ -105,7 +81,7 @@ def load_model(
         return _compiled(path, dict(options))
 
     system = _system(compiled, again, parameters, realisation, band, order)
-    return replace(system, loaded=str(path) if name.endswith(".py") else name)
+    return replace(system, loaded=str(path) if is_file_name("models", name) else name)
 
 
 def system_at(
@@ -140,7 +116,7 @@ def system_at(
     if compiled.meta["variant"] != variant:
         compiled = _compiled(path, {"variant": variant})
     settings = realisation or choose_realisation(None, tuple(compiled.meta["band"]))
-    loaded = str(path) if name.endswith(".py") else name
+    loaded = str(path) if is_file_name("models", name) else name
     return System(compiled, base_values(compiled, values), settings, loaded)
 
 
@@ -214,18 +190,25 @@ def _compiled(path: Path, options: dict[str, str]) -> CompiledModel:
     except (OSError, UnicodeError) as error:
         msg = f"model file {path} cannot be read: {error}"
         raise ModelError(msg) from error
-    closed = _is_closed(text)
-    key = cache.key("file", text, repr(sorted(options.items())))
+    closed = is_closed(path, text)
+    # A file in TOML may leave its name to that of the file.
+    told = (text, path.name) if path.suffix == ".toml" else (text,)
+    key = cache.key("file", *told, repr(sorted(options.items())))
     sources = read_sources(key) if closed else None
     if sources is None:
         compiled = compile_model(_build(path, options))
-        if closed:
+        if closed and compiled.external is None:
             write_sources(key, compiled.sources)
         return compiled
     return CompiledModel(sources)
 
 
 def _build(path: Path, options: dict[str, str]) -> Model:
+    if path.suffix == ".toml":
+        if options:
+            msg = f"model '{path.stem}' has no variants; leave --variant out"
+            raise UsageError(msg)
+        return model_from_toml(path)
     function = getattr(load_module(path), "model", None)
     if not callable(function):
         msg = f"{path} defines no function 'model'; add 'def model() -> Model'"
@@ -243,41 +226,6 @@ def _build(path: Path, options: dict[str, str]) -> Model:
         msg = f"'model()' in {path} returns {type(model).__name__}; return a racs_bif Model"
         raise ModelError(msg)
     return model
-
-
-def _is_closed(text: str) -> bool:
-    """Say whether a file's meaning depends on its text alone."""
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError):
-        return False
-    package = {
-        alias.asname or alias.name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Import)
-        for alias in node.names
-        if alias.name == "racs_bif"
-    }
-    return all(_is_closed_node(node, package) for node in ast.walk(tree))
-
-
-def _is_closed_node(node: ast.AST, package: set[str]) -> bool:
-    """Judge one node; `package` holds the names by which the file calls racs_bif itself."""
-    if isinstance(node, ast.Import):
-        return all(a.name == "racs_bif" or _is_closed_module(a.name) for a in node.names)
-    if isinstance(node, ast.ImportFrom):
-        if node.module == "racs_bif":
-            return all(alias.name in _OWN_NAMES for alias in node.names)
-        return not node.level and _is_closed_module(node.module or "")
-    if isinstance(node, ast.Attribute):
-        ours = isinstance(node.value, ast.Name) and node.value.id in package
-        return node.attr in _OWN_NAMES if ours else node.attr not in _OPEN_NAMES
-    return not (isinstance(node, ast.Name) and node.id in _OPEN_NAMES)
-
-
-def _is_closed_module(name: str) -> bool:
-    parts = name.split(".")
-    return parts[0] in _CLOSED or ".".join(parts[:2]) in _OWN
 
 
 def _defaults(

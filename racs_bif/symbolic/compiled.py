@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import sympy as sp
     from numpy.typing import ArrayLike
 
+    from racs_bif.symbolic.external import External
     from racs_bif.symbolic.field import Array, Vectors
 
 
@@ -48,11 +49,14 @@ class CompiledModel:
     ----------
     sources : Sources
         Texts of the compiled modules.
+    external : External, optional
+        The Python function that they call, if they call any.
     """
 
-    def __init__(self, sources: Sources) -> None:
+    def __init__(self, sources: Sources, external: External | None = None) -> None:
         self.sources = sources
-        self.meta, self._scalar, self._array = build(sources.main, "model")
+        self.external = external
+        self.meta, self._scalar, self._array = build(sources.main, "model", external)
         meta = self.meta
         self.name: str = meta["name"]
         self.states: tuple[str, ...] = tuple(meta["states"])
@@ -80,9 +84,9 @@ class CompiledModel:
         text = self.sources.main + self.sources.forms
         return hashlib.sha256(text.encode()).hexdigest()
 
-    def __reduce__(self) -> tuple[type[CompiledModel], tuple[Sources]]:
+    def __reduce__(self) -> tuple[type[CompiledModel], tuple[Sources, External | None]]:
         """Pickle the texts; the code is built again where they arrive."""
-        return (CompiledModel, (self.sources,))
+        return (CompiledModel, (self.sources, self.external))
 
     def kernel(self, name: str) -> Kernel:
         """Return a compiled function by name."""
@@ -91,7 +95,7 @@ class CompiledModel:
             scalar, array = self._scalar, self._array
             if name not in scalar:
                 if self._forms is None:
-                    _, *forms = build(self.sources.forms, "forms")
+                    _, *forms = build(self.sources.forms, "forms", self.external)
                     self._forms = (forms[0], forms[1])
                 scalar, array = self._forms
             found = self._kernels[name] = Kernel(name, scalar, array)
@@ -180,7 +184,7 @@ class CompiledModel:
             If the function is not smooth here.
         """
         if self._jets is None:
-            self._jets = JetFunctions(self.sources.main)
+            self._jets = JetFunctions(self.sources.main, self.external)
         return self._jets(name, algebra, *groups)
 
     def output_values(self, x: Array, p: Array) -> dict[str, Array]:
@@ -216,7 +220,7 @@ def compile_model(model: Model) -> CompiledModel:
         If the model cannot be compiled; see `racs_bif.symbolic.generate.generate`.
     """
     try:
-        return CompiledModel(_sources(model))
+        return CompiledModel(_sources(model), model.external)
     except RecursionError:
         msg = f"model '{model.name}': an expression is nested too deeply; split it"
         raise ModelError(msg) from None
@@ -224,11 +228,11 @@ def compile_model(model: Model) -> CompiledModel:
 
 def _sources(model: Model) -> Sources:
     """Return the compiled texts of a model, from the cache if they are there."""
-    expressions = [*model.equations.values(), *model.outputs.values()]
+    expressions = [*model.equations.values(), *model.outputs.values(), *model.terms.values()]
     expressions += [part for e in model.elements for part in (e.input, e.law)]
     expressions += [d.expression for d in model.derived]
     expressions += list(model.mass) if model.mass is not None else []
-    told = repr((facts(model), list(model.outputs)))
+    told = repr((facts(model), list(model.outputs), list(model.terms)))
     key = cache.key("model", told, *map(_spelled, expressions))
     sources = read_sources(key)
     if sources is None:

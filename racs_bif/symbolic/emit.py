@@ -113,14 +113,14 @@ class _Writer:
         users = Counter(a for n in nodes for a in graph.ops[n][1])
         users.update(outputs)
         for node in nodes:
-            name, args, payload = graph.ops[node]
+            name, _, payload = graph.ops[node]
             if name == "const":
                 value = float(payload)
                 self._names[node] = repr(value) if value >= 0 else f"({value!r})"
             elif name == "input":
                 self._names[node] = f"i{node}"
             elif node not in self._names:
-                self._write(node, name, args, users[node])
+                self._write(node, users[node])
 
     def text(self, node: int) -> str:
         """Return what stands for a node: its name, or its expression if it has no name."""
@@ -130,12 +130,17 @@ class _Writer:
             return self._pending[node]
         return repr(self.graph.value(node))
 
-    def _write(self, node: int, name: str, args: tuple[int, ...], users: int) -> None:
+    def _write(self, node: int, users: int) -> None:
+        name, args, payload = self.graph.ops[node]
         parts = [self.text(a) for a in args]
         if name in _INFIX:
             text = f"({parts[0]} {_INFIX[name]} {parts[1]})"
         elif name == "neg":
             text = f"(-{parts[0]})"
+        elif name == "bundle":
+            text = f"({''.join(part + ', ' for part in parts)})"
+        elif name == "call":
+            text = f"call_({int(float(payload))}, {', '.join(parts)})"
         else:
             text = f"{name}_({', '.join(parts)})"
         depth = 1 + max((self._depth.get(a, 0) for a in args), default=0)

@@ -73,6 +73,22 @@ class VectorField(ABC):
         del p
         return None
 
+    stateless: bool = False
+    """Whether the model has no states of its own, so that outputs of its elements stand for them."""
+
+    def own_outputs(self, x: Array, p: Array) -> dict[str, Array]:
+        """Return what stands for states at N points x (n, N), each (N,), by name; by default none.
+
+        Called of a field that is `stateless` only.
+        """
+        del x, p
+        return {}
+
+    def telling(self, x: Array, p: Array, v: Vectors, own: int) -> Vectors:
+        """Return the part of a direction (n,) at one point whose length counts: `own` states."""
+        del x, p
+        return v[:own]
+
     @abstractmethod
     def f_xxx(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:
         """Return the trilinear form C(u, v, w) at one point, shaped like the directions."""
@@ -80,3 +96,18 @@ class VectorField(ABC):
     @abstractmethod
     def f_xp(self, x: Array, p: Array, v: Vectors, dp: Array) -> Vectors:
         """Return the derivative of f_x v in the parameter direction `dp` at one point."""
+
+    def f_xx_along(self, x: Array, p: Array, u: Vectors, v: Vectors) -> Vectors:
+        """Return B(u, v) at N points x (n, N), one pair of directions (n, N) for each, (n, N)."""
+        columns = zip(x.T, u.T, v.T, strict=True)
+        return np.stack([self.f_xx(a, p, b, c) for a, b, c in columns], axis=1)
+
+    def f_xxx_along(self, x: Array, p: Array, u: Vectors, v: Vectors, w: Vectors) -> Vectors:
+        """Return C(u, v, w) at N points x (n, N), three directions (n, N) for each, (n, N)."""
+        columns = zip(x.T, u.T, v.T, w.T, strict=True)
+        return np.stack([self.f_xxx(a, p, b, c, d) for a, b, c, d in columns], axis=1)
+
+    def f_xp_along(self, x: Array, p: Array, v: Vectors, dp: Array) -> Vectors:
+        """Return `f_xp` at N points x (n, N), one direction v (n, N) for each, as (n, N)."""
+        columns = zip(x.T, v.T, strict=True)
+        return np.stack([self.f_xp(a, p, b, dp) for a, b in columns], axis=1)

@@ -139,6 +139,18 @@ def _where(g: Graph, _: int, args: tuple[int, ...], dots: list[int]) -> int:
     return g.where(args[0], dots[1], dots[2])
 
 
+def _call(g: Graph, node: int, args: tuple[int, ...], dots: list[int]) -> int:
+    """Differentiate a form of derivatives of an external function, linear in its directions."""
+    output = int(float(g.ops[node][2]))
+    result = g.zero
+    if dots[0] != g.zero:
+        result = g.call(output, (*args, dots[0]))
+    for k in range(1, len(args)):
+        if dots[k] != g.zero:
+            result = g.add(result, g.call(output, (*args[:k], dots[k], *args[k + 1 :])))
+    return result
+
+
 def _gauss(g: Graph, _: int, a: int) -> int:
     two_over_root_pi = g.constant(1.1283791670955126)
     return g.mul(two_over_root_pi, g.unary("exp", g.neg(_square(g, a))))
@@ -153,6 +165,8 @@ _RULES: Final[dict[str, Rule]] = {
     "pow": _pow,
     "absorb": _absorb,
     "where": _where,
+    "bundle": lambda g, _, __, d: g.bundle(d),
+    "call": _call,
     "exp": _chain(lambda _, node, __: node),
     "log": _over(lambda _, __, a: a),
     "sqrt": _over(lambda g, node, _: g.mul(g.constant(2.0), node)),

@@ -71,8 +71,9 @@ class _Generator:
         self.fixed = set(self.base) | set(self.through)
         self.symbols = symbols
         self.proper = [self._strictly_proper(k) for k in range(len(self.laws))]
+        calls = {} if model.external is None else model.external.calls
+        lower = self.lower = Lowering(g, self.symbols, self.fixed, calls)
         inputs = self._element_inputs()
-        lower = self.lower = Lowering(g, self.symbols, self.fixed)
         right = [lower(e) for e in model.equations.values()]
         if model.mass is not None:
             right = solve_mass(model, lower, right)
@@ -98,20 +99,22 @@ class _Generator:
         }
 
     def _element_inputs(self) -> list[int]:
-        """Lower the inputs of elements in an order in which feedthrough never meets itself."""
+        """Lower terms and elements' inputs in an order in which feedthrough never meets itself."""
         g = self.graph
+        terms = dict(self.model.terms)
         waiting = dict(enumerate(self.model.elements))
         for k, element in enumerate(self.model.elements):
             if self.proper[k]:
                 self.symbols[element.output] = self.zeta[k]
         nodes: dict[int, int] = {}
-        while waiting:
+        while waiting or terms:
+            known = self._lower_terms(terms)
             ready = [
                 k
                 for k, e in waiting.items()
                 if all(symbol.name in self.symbols for symbol in e.input.free_symbols)
             ]
-            if not ready:
+            if waiting and not ready and not known:
                 names = ", ".join(e.output for e in waiting.values())
                 msg = (
                     f"model '{self.model.name}': elements {names} feed each other without delay; "
@@ -127,6 +130,15 @@ class _Generator:
                     self.symbols[element.output] = fed
         return [nodes[k] for k in range(len(self.model.elements))]
 
+    def _lower_terms(self, terms: dict[str, sp.Expr]) -> bool:
+        """Lower those of the terms that can be, and take them away; say whether there were any."""
+        found = False
+        for name, expression in list(terms.items()):
+            if all(symbol.name in self.symbols for symbol in expression.free_symbols):
+                self.symbols[name] = self.lower(terms.pop(name))
+                found = True
+        return found
+
     def sources(self) -> Sources:
         """Return both module texts."""
         pattern = self._jacobian()
@@ -140,7 +152,7 @@ class _Generator:
             "law_sizes": [(len(n.exponents), len(d.exponents)) for n, d in self.laws],
             "feedthrough": [not proper for proper in self.proper],
         }
-        return Sources(_module(main, meta), _module(self._forms(), {}))
+        return Sources(module(main, meta), module(self._forms(), {}))
 
     def _function(self, name: str, groups: dict[str, Sequence[int]], outputs: list[int]) -> str:
         function = Function(name, groups, outputs)
@@ -226,12 +238,14 @@ def _inverse(model: Model, name: str, expression: sp.Expr, sets: str) -> sp.Expr
     return solutions[0]
 
 
-def _module(functions: Sequence[str], meta: dict[str, Any]) -> str:
+def module(functions: Sequence[str], meta: dict[str, Any]) -> str:
+    """Return the text of a module of emitted functions."""
     names = re.findall(r"^    def (\w+)\(", "\n".join(functions), re.MULTILINE)
     body = "\n".join(functions)
     table = "".join(f"{name!r}: {name}, " for name in names)
     # The functions of `m` become locals of make, so that emitted code reaches them quickly.
-    calls = "\n".join(f"    {name}_ = m.{name}" for name in _CALLED)
+    called = (*_CALLED, "call") if "call_(" in body else _CALLED
+    calls = "\n".join(f"    {name}_ = m.{name}" for name in called)
     return f"META = {meta!r}\n\n\ndef make(m):\n{calls}\n{body}\n    return {{{table}}}\n"
 
 

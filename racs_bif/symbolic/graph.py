@@ -215,6 +215,22 @@ class Graph:
         """Return `a` where the condition holds and `b` elsewhere."""
         return a if a == b else self._node("where", (condition, a, b))
 
+    def bundle(self, args: Sequence[int]) -> int:
+        """Return several nodes as one argument of `call`."""
+        return self._node("bundle", tuple(args))
+
+    def call(self, output: int, bundles: Sequence[int]) -> int:
+        """Return a result of the model's external function, or a form of its derivatives.
+
+        Parameters
+        ----------
+        output : int
+            Which result.
+        bundles : sequence of int
+            Its arguments and, for a derivative, directions, as nodes made by `bundle`.
+        """
+        return self._node("call", tuple(bundles), float(output))
+
     def reachable(self, outputs: Iterable[int]) -> list[int]:
         """Return the nodes that `outputs` need, arguments before their users."""
         stack, seen = list(outputs), set[int]()

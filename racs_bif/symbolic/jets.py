@@ -56,6 +56,10 @@ class Algebra:
 
     def multiply(self, a: Coefficients, b: Coefficients) -> Coefficients:
         """Return the coefficients of a product."""
+        if self.degree == 1:  # first derivatives, which are asked for most often
+            product = a[0] * b + b[0] * a
+            product[0] = a[0] * b[0]
+            return np.asarray(product)
         terms = a[self._left] * b[self._right]
         return np.asarray(np.add.reduceat(terms, self._starts))
 
@@ -154,6 +158,10 @@ class Jet:
 
     def composed(self, series: list[float]) -> Jet:
         """Return a function of this jet from its Taylor coefficients at the constant."""
+        if self.algebra.degree == 1:
+            result = series[1] * self.c
+            result[0] = series[0]
+            return Jet(self.algebra, result)
         small = self.c.copy()
         small[0] = 0.0
         result = np.zeros_like(small)
@@ -210,12 +218,16 @@ class JetFunctions:
     ----------
     text : str
         The module.
+    call : callable, optional
+        The external function that it calls.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, call: Callable[..., Any] | None = None) -> None:
         namespace: dict[str, Any] = {}
         exec(compile(text, "<racs_bif jets>", "exec"), namespace)  # our own text
-        self._functions: dict[str, Callable[..., Any]] = namespace["make"](JETS)
+        self._functions: dict[str, Callable[..., Any]] = namespace["make"](
+            SimpleNamespace(**{**vars(JETS), "call": call})
+        )
 
     def __call__(self, name: str, algebra: Algebra, *groups: Coefficients) -> Coefficients:
         """Evaluate a function.

@@ -56,8 +56,10 @@ ARRAY: Final = SimpleNamespace(
 Functions = dict[str, Callable[..., Any]]
 
 
-def build(text: str, name: str) -> tuple[dict[str, Any], Functions, Functions]:
-    """Execute the text of a compiled module.
+def build(
+    text: str, name: str, call: Callable[..., Any] | None = None
+) -> tuple[dict[str, Any], Functions, Functions]:
+    """Execute the text of a compiled module, which may call an external function.
 
     Returns
     -------
@@ -67,7 +69,10 @@ def build(text: str, name: str) -> tuple[dict[str, Any], Functions, Functions]:
     namespace: dict[str, Any] = {}
     exec(compile(text, f"<racs_bif {name}>", "exec"), namespace)  # our own text
     make = namespace["make"]
-    return namespace["META"], make(SCALAR), make(ARRAY)
+    if call is None:
+        return namespace["META"], make(SCALAR), make(ARRAY)
+    scalar, array = ({**vars(kind), "call": call} for kind in (SCALAR, ARRAY))
+    return namespace["META"], make(SimpleNamespace(**scalar)), make(SimpleNamespace(**array))
 
 
 class Kernel:
@@ -113,6 +118,25 @@ class Kernel:
             except (ArithmeticError, ValueError):
                 pass  # undefined on floats: arrays tell where, by NaN or infinity
         return self._on_arrays(p, groups)
+
+    def bind(self, p: NDArray[np.float64]) -> Callable[..., NDArray[np.float64]]:
+        """Return the function of the other arguments at parameter sets p (np, N).
+
+        What depends on parameters only is computed once, here. Arguments have shape (k, N), and
+        must be real.
+        """
+        with np.errstate(all="ignore"):
+            constants = tuple(self._prepare_array(p))
+        array, count = self._array, p.shape[1]
+
+        def bound(*groups: NDArray[np.float64]) -> NDArray[np.float64]:
+            results = array(constants, *groups)
+            out = np.empty((len(results), count))
+            for k, row in enumerate(results):
+                out[k] = row
+            return out
+
+        return bound
 
     def _prepared(self, p: NDArray[Any]) -> tuple[Any, ...]:
         key = p.tobytes()

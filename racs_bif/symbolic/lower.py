@@ -42,15 +42,25 @@ class Lowering:
         Nodes that depend on parameters only: they are multiplied and added first, so that what
         does not depend on the state can be computed once.
 
+    calls : mapping of str to int
+        Names of external functions, and which result of `Graph.call` each is.
+
     Raises
     ------
     ModelError
         For a function, a number or an object that cannot be evaluated on real numbers.
     """
 
-    def __init__(self, graph: Graph, symbols: Mapping[str, int], fixed: set[int]) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        symbols: Mapping[str, int],
+        fixed: set[int],
+        calls: Mapping[str, int] | None = None,
+    ) -> None:
         self.graph = graph
         self.symbols = symbols
+        self._calls = dict(calls or {})
         self._fixed = set(fixed)
         self._done: dict[sp.Basic, int] = {}
 
@@ -81,6 +91,8 @@ class Lowering:
         kind = type(e).__name__
         if kind in _FUNCTIONS:
             return self.graph.unary(_FUNCTIONS[kind], self(e.args[0]))
+        if kind in self._calls:
+            return self.graph.call(self._calls[kind], [self.graph.bundle([*map(self, e.args)])])
         if kind in _RELATIONS:
             return self.graph.compare(_RELATIONS[kind], self(e.args[0]), self(e.args[1]))
         rule = self._rules().get(kind)
@@ -101,6 +113,7 @@ class Lowering:
             "Heaviside": self._heaviside,
             "And": lambda e: g.logic("both", [self(a) for a in e.args]),
             "Or": lambda e: g.logic("either", [self(a) for a in e.args]),
+            "ITE": self._either_condition,
             "Not": lambda e: g.logic("negated", [self(e.args[0])]),
             "BooleanTrue": lambda _: g.compare("eq", g.zero, g.zero),
             "BooleanFalse": lambda _: g.compare("ne", g.zero, g.zero),
@@ -157,11 +170,21 @@ class Lowering:
             result = self.graph.where(condition, result, other)
         return result
 
+    def _either_condition(self, e: sp.Basic) -> int:
+        g, (condition, yes, no) = self.graph, [self(a) for a in e.args]
+        otherwise = g.logic("both", [g.logic("negated", [condition]), no])
+        return g.logic("either", [g.logic("both", [condition, yes]), otherwise])
+
     def _heaviside(self, e: sp.Basic) -> int:
         g, x = self.graph, self(e.args[0])
         at_zero = self(e.args[1]) if len(e.args) > 1 else g.constant(0.5)
         beyond = g.where(g.compare("gt", x, g.zero), g.one, at_zero)
         return g.where(g.compare("lt", x, g.zero), g.zero, beyond)
+
+
+def _short(number: sp.Expr) -> str:
+    """Return a number as a short text; one of many digits by its size."""
+    return str(number.evalf(4) if number.is_Rational or number.is_Float else number)[:60]
 
 
 def _real(number: sp.Expr) -> float:
@@ -171,6 +194,6 @@ def _real(number: sp.Expr) -> float:
     except (TypeError, ValueError, OverflowError):
         value = math.nan
     if not math.isfinite(value):
-        msg = f"'{str(number)[:60]}' is not a finite real number; write the term another way"
+        msg = f"'{_short(number)}' is not a finite real number; write the term another way"
         raise ModelError(msg)
     return value

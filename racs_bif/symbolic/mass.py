@@ -138,4 +138,7 @@ def _numbers(model: Model) -> np.ndarray:
     values |= {name: float(model.guess.get(name, 0.0)) for name in model.states}
     known = {symbol: values[symbol.name] for symbol in model.mass.free_symbols}
     entries = [[complex(e.subs(known)) for e in model.mass.row(i)] for i in range(model.mass.rows)]
+    if np.all(np.isfinite(entries)) and np.any(np.imag(entries)):
+        msg = f"model '{model.name}': the mass matrix is complex; write it with real numbers"
+        raise ModelError(msg)
     return np.asarray(entries).real

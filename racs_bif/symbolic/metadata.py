@@ -15,6 +15,7 @@ def describe(model: Model) -> dict[str, Any]:
     return facts(model) | {
         "outputs": {name: str(e) for name, e in model.outputs.items()},
         "equations": {name: str(e) for name, e in model.equations.items()},
+        "terms": {name: str(e) for name, e in model.terms.items()},
         "mass": mass,
     }
 
@@ -30,6 +31,8 @@ def facts(model: Model) -> dict[str, Any]:
         "notes": list(model.notes),
         "band": [float(bound) for bound in model.band],
         "states": list(model.states),
+        "inputs": list(model.inputs),
+        "external": None if model.external is None else model.external.facts,
         "units": dict(model.units),
         "descriptions": dict(model.descriptions),
         "guess": {name: float(value) for name, value in model.guess.items()},

@@ -5,8 +5,8 @@ Importing this module does not import sympy: a model loaded from the cache never
 
 from __future__ import annotations
 
-import keyword
 import math
+import unicodedata
 from dataclasses import dataclass, field, replace
 from numbers import Real
 from typing import TYPE_CHECKING
@@ -18,8 +18,12 @@ if TYPE_CHECKING:
 
     import sympy as sp
 
+    from racs_bif.symbolic.external import External
+
 LAPLACE = "s"
 """Name of the Laplace variable in transfer laws."""
+GRAMMAR = frozenset(("and", "else", "for", "if", "in", "is", "not", "or", "True", "False", "None"))
+"""Keywords that mean something in expressions; `lambda` and the others are names like any."""
 _EVERYWHERE = (-math.inf, math.inf)
 
 
@@ -147,6 +151,14 @@ class Model:
         What a user must be told whenever results of this model are shown.
     band : (float, float)
         Frequencies [rad/s] that matter in this model: where a realisation has to be good.
+    inputs : sequence of str
+        Base parameters that act on it from outside, as a control engineer counts them: what
+        linearisations have as inputs unless told otherwise.
+    terms : mapping of str to sympy expression
+        Shared terms, computed once and in this order; each may use those before it. Equations,
+        outputs and inputs of elements may use them, the mass matrix and laws may not.
+    external : External, optional
+        A Python function that gives the equations; see `racs_bif.symbolic.functions`.
 
     Raises
     ------
@@ -171,15 +183,18 @@ class Model:
     variants: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     band: tuple[float, float] = (0.1, 100.0)
+    inputs: tuple[str, ...] = ()
+    terms: Mapping[str, sp.Expr] = field(default_factory=dict)
+    external: External | None = None
 
     def __post_init__(self) -> None:
         """Make the fields immutable and sympy's, and check that the parts fit together."""
         import sympy as sp
 
         freeze = object.__setattr__
-        for key in ("parameters", "elements", "derived", "notes"):
+        for key in ("parameters", "elements", "derived", "notes", "inputs"):
             freeze(self, key, tuple(getattr(self, key)))
-        for key in ("equations", "outputs"):
+        for key in ("equations", "outputs", "terms"):
             mapping = {k: _expression(self.name, k, v) for k, v in dict(getattr(self, key)).items()}
             freeze(self, key, mapping)
         freeze(self, "elements", tuple(_element(self.name, e) for e in self.elements))
@@ -200,13 +215,20 @@ class Model:
         """Names of the states, in the order of the equations."""
         return tuple(self.equations)
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from racs_bif.symbolic.metadata import describe
+        from racs_bif.symbolic.shown import model_card
+
+        return model_card(describe(self))
+
     def _check_names(self) -> None:
         names = [*self.equations, *(p.name for p in self.parameters)]
         names += [e.output for e in self.elements] + [d.name for d in self.derived]
-        names += self.outputs
+        names += [*self.outputs, *self.terms]
         seen: set[str] = set()
         for name in names:
-            if not isinstance(name, str) or not name.isidentifier() or keyword.iskeyword(name):
+            if not isinstance(name, str) or not name.isidentifier() or name in GRAMMAR:
                 msg = f"model '{self.name}': '{name}' cannot be a name; use letters, digits and _"
                 raise ModelError(msg)
             if name in seen:
@@ -236,6 +258,10 @@ class Model:
                     f"'{derived.sets}', which is no parameter; {nearest(derived.sets, base)}"
                 )
                 raise ModelError(msg)
+        for name in self.inputs:
+            if name not in base:
+                msg = f"model '{self.name}': input '{name}' is no parameter; {nearest(name, base)}"
+                raise ModelError(msg)
         known = [*self.states, *(e.output for e in self.elements)]
         for name in self.guess:
             if name not in known:
@@ -261,6 +287,9 @@ class Model:
         base = {p.name for p in self.parameters}
         inner = base | set(self.states) | {e.output for e in self.elements}
         places: list[tuple[str, sp.Expr, set[str]]] = []
+        for name, expression in self.terms.items():
+            places.append((f"term '{name}'", expression, set(inner)))
+            inner.add(name)
         places += [(f"equation of '{k}'", v, inner) for k, v in self.equations.items()]
         places += [(f"output '{k}'", v, inner) for k, v in self.outputs.items()]
         places += [(f"input of '{e.output}'", e.input, inner) for e in self.elements]
@@ -309,6 +338,8 @@ def find_parameter(name: str, known: Iterable[str]) -> str:
     """
     names = list(known)
     if name not in names:
-        msg = f"unknown parameter '{name}'; {nearest(name, names)}"
+        same = unicodedata.normalize("NFKC", name)
+        hint = f"write its letters as in '{same}'" if same in names else nearest(name, names)
+        msg = f"unknown parameter '{name}'; {hint}"
         raise ParameterError(msg)
     return name

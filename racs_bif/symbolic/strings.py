@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import ast
+import keyword
 import math
 import operator
+import re
 import unicodedata
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from racs_bif.errors import ModelError, nearest
-from racs_bif.symbolic.model import FractionalElement, Model, Parameter
+from racs_bif.symbolic.model import GRAMMAR, FractionalElement, Model, Parameter
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -27,6 +29,8 @@ _FUNCTIONS: Final = {name: name for name in _SAME_NAMES} | {
     "max": "Max",
     "min": "Min",
 }
+_AS_WRITTEN: Final = {"abs", "max", "min", "sign", "heaviside"}
+"""Functions that sympy would look at for minutes, for simplifications that nothing needs."""
 _MANY: Final = (2, 100)
 _ARGUMENTS: Final = {"log": (1, 2), "heaviside": (1, 2), "max": _MANY, "min": _MANY}
 """Least and greatest number of arguments of functions that do not take one."""
@@ -38,7 +42,12 @@ _OPERATORS: Final[dict[type[ast.operator], Callable[[Any, Any], Any]]] = {
     ast.Pow: operator.pow,
 }
 _CONSTANTS: Final = {"pi"}
+_FREE_KEYWORDS: Final = frozenset(keyword.kwlist) - GRAMMAR
+_WORD: Final = re.compile(r"[^\W\d]\w*")
+_MARK: Final = "\u00b7keyword"
+"""What a keyword has behind it where it is a name; a dot that may stand in names, and does not."""
 _LONGEST = 20_000
+_MOST_BITS = 8192
 _LARGEST_POWER = 1000.0
 """Greatest exponent of a symbol, and greatest number of decimal places of a power of a number."""
 
@@ -51,6 +60,7 @@ def model_from_strings(
     guess: Mapping[str, float] | None = None,
     elements: Iterable[tuple[str, str, str]] = (),
     outputs: Mapping[str, str] | None = None,
+    terms: Mapping[str, str] | None = None,
 ) -> Model:
     """Build a model from strings.
 
@@ -68,6 +78,8 @@ def model_from_strings(
         Fractional elements, for example ``[("w", "x", "s**0.5")]``.
     outputs : mapping of str to str, optional
         Further quantities.
+    terms : mapping of str to str, optional
+        Shared terms that equations, outputs and later terms may use.
 
     Returns
     -------
@@ -84,16 +96,17 @@ def model_from_strings(
     >>> model.states
     ('x',)
     """
-    _check_tables(name, equations, parameters, guess, outputs)
+    _check_tables(name, equations, parameters, guess, outputs, terms)
     return Model(
         name=name,
-        equations=_parsed(equations),
+        equations=read_table(equations),
         parameters=tuple(
-            Parameter(_plain(key), _number(name, key, value)) for key, value in parameters.items()
+            Parameter(plain(key), number(name, key, value)) for key, value in parameters.items()
         ),
-        guess={_plain(k): _number(name, k, value) for k, value in (guess or {}).items()},
-        elements=tuple(_element(name, element) for element in elements),
-        outputs=_parsed(outputs or {}),
+        guess={plain(k): number(name, k, value) for k, value in (guess or {}).items()},
+        elements=tuple(read_element(name, element) for element in elements),
+        outputs=read_table(outputs or {}),
+        terms=read_table(terms or {}),
     )
 
 
@@ -104,10 +117,17 @@ def _check_tables(name: str, *tables: object) -> None:
             msg = f"model '{name}': give names and expressions as a dict, not as {kind}"
             raise ModelError(msg)
         for key in table or ():
-            _check_name(name, key)
+            check_name(name, key)
 
 
-def _check_name(model: str, name: object) -> None:
+def check_name(model: str, name: object) -> None:
+    """Refuse what can be no name in an expression.
+
+    Raises
+    ------
+    ModelError
+        If it is no string, or a constant.
+    """
     if not isinstance(name, str):
         msg = f"model '{model}': {name!r} cannot be a name; give a string"
         raise ModelError(msg)
@@ -116,29 +136,42 @@ def _check_name(model: str, name: object) -> None:
         raise ModelError(msg)
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """Return a name as Python's tokeniser spells it (the micro sign becomes a Greek mu)."""
     return unicodedata.normalize("NFKC", name)
 
 
-def _parsed(table: Mapping[str, str]) -> dict[str, sp.Expr]:
-    return {_plain(name): parse(text) for name, text in table.items()}
+def read_table(table: Mapping[str, str]) -> dict[str, sp.Expr]:
+    """Return expressions by name."""
+    found: dict[str, sp.Expr] = {}
+    for name, text in table.items():
+        if plain(name) in found:
+            msg = f"the name '{plain(name)}' is given twice, in two spellings; rename one of them"
+            raise ModelError(msg)
+        try:
+            found[plain(name)] = parse(text)
+        except ModelError as error:
+            msg = f"'{_short(name)}': {error}"
+            raise ModelError(msg) from None
+    return found
 
 
-def _element(name: str, element: Sequence[str]) -> FractionalElement:
+def read_element(name: str, element: Sequence[str]) -> FractionalElement:
+    """Return an element of a model from its strings (output, input, law)."""
     if isinstance(element, str) or len(element) != 3:
         msg = f"model '{name}': an element is (output, input, law), not {element!r}"
         raise ModelError(msg)
     output, source, law = element
-    _check_name(name, output)
-    return FractionalElement(_plain(output), parse(source), parse(law))
+    check_name(name, output)
+    return FractionalElement(plain(output), parse(source), parse(law))
 
 
-def _number(name: str, key: str, value: float) -> float:
+def number(name: str, key: str, value: float) -> float:
+    """Return a model's number as a float, refusing what is none by its name."""
     try:
         return float(value)
-    except (TypeError, ValueError):
-        msg = f"model '{name}': '{key}' is {value!r}, which is no number"
+    except (TypeError, ValueError, OverflowError):
+        msg = f"model '{name}': '{key}' is {_short(repr(value))}, which is no number"
         raise ModelError(msg) from None
 
 
@@ -162,7 +195,7 @@ def parse(text: str) -> sp.Expr:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of Python's tokeniser: what matters is refused below
-            tree = ast.parse(text.strip().replace("^", "**"), mode="eval")
+            tree = ast.parse(_named(text.strip().replace("^", "**")), mode="eval")
         return _Reader(text).expression(tree.body)
     except ModelError:
         raise
@@ -172,6 +205,11 @@ def parse(text: str) -> sp.Expr:
     except (SyntaxError, ValueError, TypeError, ArithmeticError):
         msg = f"'{_short(text)}' is not an arithmetic expression; check brackets and operators"
         raise ModelError(msg) from None
+
+
+def _named(text: str) -> str:
+    """Put words in for keywords that mean nothing in an expression, such as `lambda`."""
+    return _WORD.sub(lambda m: m[0] + _MARK if m[0] in _FREE_KEYWORDS else m[0], text)
 
 
 def _check_text(text: object) -> None:
@@ -215,7 +253,7 @@ class _Reader:
             msg = f"'{node.value!r}' in '{_short(self.text)}' is not a real number"
             raise ModelError(msg)
         if isinstance(node.value, int):
-            return sp.Integer(node.value)
+            return self._bounded(sp.Integer(node.value))
         if not math.isfinite(node.value):
             msg = f"a number in '{_short(self.text)}' is too large"
             raise ModelError(msg)
@@ -224,7 +262,7 @@ class _Reader:
     def _name(self, node: ast.Name) -> sp.Expr:
         import sympy as sp
 
-        return sp.pi if node.id in _CONSTANTS else sp.Symbol(node.id)
+        return sp.pi if node.id in _CONSTANTS else sp.Symbol(node.id.removesuffix(_MARK))
 
     def _signed(self, node: ast.UnaryOp) -> sp.Expr:
         if isinstance(node.op, ast.USub):
@@ -242,7 +280,14 @@ class _Reader:
         left, right = self.expression(node.left), self.expression(node.right)
         if isinstance(node.op, ast.Pow):
             self._check_power(left, right)
-        return operation(left, right)
+        return self._bounded(operation(left, right))
+
+    def _bounded(self, value: sp.Expr) -> sp.Expr:
+        """Refuse numbers whose digits alone take long to reckon with."""
+        if value.is_Rational and max(value.p.bit_length(), value.q.bit_length()) > _MOST_BITS:
+            msg = f"a number in '{_short(self.text)}' has too many digits"
+            raise ModelError(msg)
+        return value
 
     def _check_power(self, left: sp.Expr, right: sp.Expr) -> None:
         """Refuse powers whose exact value alone could fill the memory."""
@@ -270,13 +315,14 @@ class _Reader:
         if not least <= len(node.args) <= most:
             msg = f"'{_short(ast.unparse(node))}': wrong number of arguments"
             raise ModelError(msg)
-        return getattr(sp, _FUNCTIONS[name])(*map(self.expression, node.args))
+        options = {"evaluate": False} if name in _AS_WRITTEN else {}
+        return getattr(sp, _FUNCTIONS[name])(*map(self.expression, node.args), **options)
 
     def _choice(self, node: ast.IfExp) -> sp.Expr:
         import sympy as sp
 
         chosen = (self.expression(node.body), self._condition(node.test))
-        return sp.Piecewise(chosen, (self.expression(node.orelse), True))
+        return sp.Piecewise(chosen, (self.expression(node.orelse), True), evaluate=False)
 
     def _condition(self, node: ast.expr) -> sp.Basic:
         import sympy as sp
@@ -289,7 +335,8 @@ class _Reader:
         if relation is None:
             msg = f"'{_short(ast.unparse(node))}': compare two terms with < <= > or >="
             raise ModelError(msg)
-        return relation(self.expression(node.left), self.expression(node.comparators[0]))
+        sides = self.expression(node.left), self.expression(node.comparators[0])
+        return relation(*sides, evaluate=False)
 
 
 def _short(text: str) -> str:

@@ -8,6 +8,7 @@ import pytest
 from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.fractional.oustaloup import Oustaloup
 from racs_bif.fractional.system import System
+from racs_bif.symbolic.field import VectorField
 
 
 @pytest.fixture(params=["diffusive", "oustaloup"], scope="module")
@@ -133,6 +134,41 @@ def test_many_points_equal_single_points(system):
     for k in range(5):
         agree(forms[:, k], field.f_xx(x[:, 0], p, x[:, k], x[:, 4 - k]), 1e-13)
         agree(moved[:, k], field.f_xp(x[:, 0], p, x[:, k], dp), 1e-13)
+
+
+@pytest.mark.parametrize("turn", [1.0, np.exp(0.7j)], ids=["real", "complex"])
+@pytest.mark.parametrize("moves", ["alpha", "law", "none"])
+def test_forms_along_many_points_equal_those_at_each(system, turn, moves):
+    field, p = system.field, system.values
+    x, u, v, w = (
+        np.column_stack([state(system, 4 * seed + k)[0] for seed in range(5)]) for k in range(4)
+    )
+    u, v = u * turn, v / turn**2
+    dp = np.zeros(len(p))
+    if moves == "alpha":
+        dp[field.parameters.index("alpha")] = 1.0
+    elif moves == "law":
+        dp += np.random.default_rng(1).uniform(0.0, 0.1, len(p)) * np.abs(p)
+    else:
+        dp[0] = 1.0
+    found = {
+        "xx": field.f_xx_along(x, p, u, v),
+        "xxx": field.f_xxx_along(x, p, u, v, w),
+        "xp": field.f_xp_along(x, p, u, dp),
+    }
+    assert all(form.shape == x.shape for form in found.values())
+    for k in range(5):
+        at, a, b, c = x[:, k], u[:, k], v[:, k], w[:, k]
+        agree(found["xx"][:, k], field.f_xx(at, p, a, b), 1e-13)
+        agree(found["xxx"][:, k], field.f_xxx(at, p, a, b, c), 1e-13)
+        agree(found["xp"][:, k], field.f_xp(at, p, a, dp), 1e-13)
+    loops = (
+        VectorField.f_xx_along(field, x, p, u, v),
+        VectorField.f_xxx_along(field, x, p, u, v, w),
+        VectorField.f_xp_along(field, x, p, u, dp),
+    )
+    for form, loop in zip(found.values(), loops, strict=True):
+        np.testing.assert_allclose(form, loop, rtol=1e-12, atol=1e-12 * np.abs(loop).max())
 
 
 def test_other_parameters_are_noticed(system):

@@ -55,7 +55,7 @@ REFUSED = {
         {"derived": (DerivedParameter("a", 2 * a, sets="a"),)},
         ["'a'", "twice"],
     ),
-    "a keyword": ({"equations": {"lambda": sp.Integer(1)}}, ["'lambda'", "cannot be a name"]),
+    "a word of the grammar": ({"equations": {"if": sp.Integer(1)}}, ["'if'", "cannot be a name"]),
     "no identifier": ({"equations": {"x 1": sp.Integer(1)}}, ["'x 1'", "cannot be a name"]),
     "no string": ({"equations": {1: sp.Integer(1)}}, ["'1'", "cannot be a name"]),
     "the Laplace variable as a state": (
@@ -246,3 +246,11 @@ def test_what_a_compiled_model_tells_of_itself():
     # b = k/a: db = (dk - b da)/a
     slope = compiled.inverse_slope(0, np.array([2.0, 5.0]), 10.0, np.array([0.5, 0.0]), 3.0)
     assert slope == pytest.approx((3.0 - 5.0 * 0.5) / 2.0, rel=1e-15)
+
+
+def test_inputs_are_parameters():
+    equations, parameters = {"x": sp.Symbol("f") - sp.Symbol("x")}, (Parameter("f", 0.0),)
+    model = Model(name="m", equations=equations, parameters=parameters, inputs=["f"])
+    assert model.inputs == ("f",)
+    with pytest.raises(ModelError, match="input 'ff' is no parameter; did you mean 'f'"):
+        Model(name="m", equations=equations, parameters=parameters, inputs=("ff",))
