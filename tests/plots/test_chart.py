@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -11,6 +12,8 @@ import racs_bif as rb
 from racs_bif.charts.settings import ChartSettings
 from racs_bif.plots.chart import COLOURS, SHADES, draw, picture, picture_slices
 from racs_bif.plots.style import save_picture
+from racs_bif.results.chart_curve import ChartCurve
+from racs_bif.results.chart_map import ChartMap, SweepMap
 
 QUICK = ChartSettings(coarse=3, depth=4)
 BOX = ((-1.0, 1.0), (-1.0, 1.1))
@@ -146,3 +149,85 @@ def test_axes_of_ones_own(chart):
 
     ax = Figure().add_subplot()
     assert draw(chart, ax=ax) is ax
+
+
+def of_map(chart, quantity, value, status=None):
+    """Return the chart with a map of simulations as if it had been made."""
+    cells = np.shape(value)
+    status = np.where(np.isnan(value), 1, 0) if status is None else status
+    sweep = SweepMap(
+        value=np.array(value, dtype=float),
+        error=np.zeros(cells),
+        status=np.array(status, dtype=np.int8),
+        watch="x",
+        duration=10.0,
+        tolerance=1e-5,
+    )
+    nothing = np.full(cells, np.nan)
+    made = ChartMap(
+        quantity=quantity,
+        unstable=np.zeros(cells, dtype=np.int8),
+        sigma=nothing,
+        omega=nothing,
+        evaluations=1,
+        sweep=sweep,
+    )
+    return replace(chart, map=made)
+
+
+def test_a_map_of_amplitudes_has_its_unit_and_shows_what_is_unknown(chart):
+    value = [[0.0, 0.1, np.nan], [0.2, 0.3, 0.4]]
+    figure = picture(of_map(chart, "amplitude", value))
+    ax, bar = figure.axes
+    (image,) = [c for c in ax.get_children() if isinstance(c, AxesImage)]
+    assert image.get_array().shape == (3, 2)
+    assert image.get_clim() == (0.0, 0.4)
+    assert image.get_cmap().name == COLOURS
+    assert bar.get_ylabel() == "amplitude of $x$"
+    legend = {text.get_text() for text in ax.get_legend().get_texts()}
+    assert "unknown" in legend
+    hatched = [c for c in ax.collections if c.get_hatch()]
+    assert [len(c.get_paths()) for c in hatched] == [1]
+    # Boundaries are drawn over it.
+    assert any(line.get_zorder() > image.get_zorder() for line in ax.get_lines())
+
+
+def test_a_map_of_exponents_has_its_unit(chart):
+    figure = picture(of_map(chart, "lyapunov", [[-0.1, 0.0], [0.0, 0.2]]))
+    assert figure.axes[1].get_ylabel() == "largest Lyapunov exponent [1/s]"
+    assert figure.axes[0].get_legend() is None or "unknown" not in {
+        text.get_text() for text in figure.axes[0].get_legend().get_texts()
+    }
+
+
+@pytest.mark.parametrize(
+    ("value", "ticks"),
+    [
+        ([[0.0, 1.0], [2.0, np.inf]], ["rest", "1", "2", "many"]),
+        ([[0.0, 0.0], [0.0, np.nan]], ["rest"]),
+        ([[1.0, 1.0], [2.0, 1.0]], ["rest", "1", "2"]),
+    ],
+)
+def test_numbers_of_crossings_have_a_colour_each(chart, value, ticks):
+    figure = picture(of_map(chart, "periods", value))
+    figure.draw_without_rendering()
+    assert [text.get_text() for text in figure.axes[1].get_yticklabels()] == ticks
+    assert "repeats" in figure.axes[1].get_ylabel()
+
+
+def test_nothing_known_is_drawn_all_the_same(chart):
+    for quantity in ("amplitude", "periods", "lyapunov"):
+        figure = picture(of_map(chart, quantity, np.full((2, 3), np.nan)))
+        (hatched,) = [c for c in figure.axes[0].collections if c.get_hatch()]
+        assert len(hatched.get_paths()) == 6
+
+
+def test_curves_of_other_points_are_drawn_and_named(chart):
+    line = np.array([[-0.5, -0.5], [0.0, 0.2], [0.4, 1.0]])
+    curve = ChartCurve(kind="lpc", name="LPC1", values=line)
+    other = ChartCurve(kind="curve", name="HC1", values=line[::-1] * 0.5)
+    ax = picture(replace(chart, curves=(curve, other))).axes[0]
+    drawn = {line.get_label(): line for line in ax.get_lines()}
+    assert drawn["fold of cycles (LPC)"].get_xdata().tolist() == [-0.5, 0.0, 0.4]
+    legend = {text.get_text() for text in ax.get_legend().get_texts()}
+    assert {"fold of cycles (LPC)", "HC1", "subcritical"} <= legend

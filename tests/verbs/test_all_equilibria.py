@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import racs_bif as rb
+from racs_bif.continuation import StepSettings
+from racs_bif.verbs.equilibria import as_branch, equilibrium_problem, follow
 
 
 def states_at(diagram, parameter, value, state):
@@ -57,6 +59,32 @@ def test_a_pitchfork_leads_to_its_other_branch():
     assert points[0].kind == "pitchfork"
     assert states_at(diagram, "p", 0.49, "x") == pytest.approx([-0.7, 0.0, 0.7], abs=2e-3)
     assert all(branch.connected for branch in diagram)
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter", "span", "fork"),
+    [
+        ("lorenz", "r", (0.0, 30.0), 1.0),
+        ("bicycle_car", "u", (20.0, 60.0), 43.66373),
+        ("fractional_duffing", "k", (-1.0, 1.0), 0.0),
+        ("freire", "nu", (-0.75, -0.45), -0.5),
+    ],
+)
+def test_a_pitchfork_makes_no_folds(name, parameter, span, fork):
+    system = rb.load_model(name)
+    start, left = rb.all_equilibria(system, parameter, span, probes=0)
+    branches = [start, left]
+    # and the branch that comes back to the symmetric one
+    problem, k = equilibrium_problem(system, parameter), len(left) // 3
+    z = np.append(left.states[k], left.column(parameter)[k])
+    back = follow(problem, z, span, StepSettings(), own=len(system.states))
+    branches.append(as_branch(system, problem, back, span))
+    for branch in branches:
+        (point,) = [p for p in branch.special if p.label != "H"]
+        assert point.label == "BP"
+        assert point.parameters[parameter] == pytest.approx(fork, abs=1e-5)
+        assert len(branch) < 150
+        assert "unexplained" not in branch.stopped
 
 
 def test_a_transcritical_point_leads_to_its_other_branch():

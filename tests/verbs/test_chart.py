@@ -6,6 +6,8 @@ import pytest
 import racs_bif as rb
 from racs_bif.charts.settings import ChartSettings
 from racs_bif.errors import ConvergenceError, ParameterError, UsageError
+from racs_bif.results.chart_curve import ChartCurve, curve_of
+from racs_bif.verbs.chart_map import SweepSettings
 
 QUICK = ChartSettings(coarse=3, depth=4)
 BOX = ((-2.0, 2.0), (-2.0, 2.1))
@@ -105,7 +107,14 @@ def test_a_map_in_a_folder_goes_on(island, chart, tmp_path):
         (("a", "b"), ((1.0, 1.0), (0.0, 1.0)), {}, "the span 1 to 1 is empty"),
         (("a", "b"), ((2.0, 1.0), (0.0, 1.0)), {}, "the span 2 to 1 is empty"),
         (("a", "b"), BOX, {"at": {"a": 1.0}}, "'a' is varied"),
-        (("a", "b"), BOX, {"quantity": "amplitude"}, "unknown map 'amplitude'"),
+        (("a", "b"), BOX, {"quantity": "colour"}, "unknown map 'colour'"),
+        (("a", "b"), BOX, {"operator": "other"}, "unknown operator 'other'"),
+        (
+            ("a", "b"),
+            BOX,
+            {"quantity": "amplitude", "sweep": SweepSettings(watch="y")},
+            "unknown state 'y'",
+        ),
         (("a", "b"), BOX, {"marks": {"r": (1.0,)}}, "at values of a or b, not of 'r'"),
         (("a", "b"), BOX, {"marks": {"a": (3.0,)}}, "a = 3 is outside its span -2 to 2"),
     ],
@@ -126,6 +135,105 @@ def test_a_plane_without_equilibria_is_told_with_what_to_do():
     )
     with pytest.raises(ConvergenceError, match="better guess, or other spans"):
         rb.stability_chart(nowhere, "a", "b", BOX)
+
+
+def test_slices_side_by_side_are_the_same(island, tmp_path):
+    alone = rb.chart_slices(island, "a", "b", BOX, ("r", (0.5, 1.0)), settings=QUICK)
+    told = []
+    shared = rb.chart_slices(
+        island,
+        "a",
+        "b",
+        BOX,
+        ("r", (0.5, 1.0)),
+        settings=QUICK,
+        workers=2,
+        progress=lambda *done: told.append(done),
+    )
+    assert shared == alone
+    assert told == [("slices", 1, 2), ("slices", 2, 2)]
+
+
+def test_the_smallest_island_and_how_finely_was_searched(chart):
+    assert chart.smallest_island == pytest.approx(2.6 / 4.0, abs=1e-3)
+    assert chart.depth == 4
+    (remark,) = chart.remarks
+    assert "1/16 of a span" in remark
+    assert "0.65 of a span" in remark
+
+
+def test_a_map_by_simulation(tmp_path):
+    # x**2 + y**2 goes to m = 1 - a**2 - b**2, or to zero.
+    model = rb.model_from_strings(
+        "normal",
+        {
+            "x": "(1 - a**2 - b**2)*x - y - x*(x**2 + y**2)",
+            "y": "x + (1 - a**2 - b**2)*y - y*(x**2 + y**2)",
+        },
+        parameters={"a": 0.0, "b": 0.0},
+        guess={"x": 0.0, "y": 0.0},
+    )
+    made = rb.stability_chart(
+        model,
+        "a",
+        "b",
+        BOX,
+        quantity="amplitude",
+        shape=(9, 6),
+        settings=QUICK,
+        sweep=SweepSettings(watch="y", start={"x": 0.5}),
+    )
+    sweep = made.map.sweep
+    assert sweep.duration == pytest.approx(60.0 * 2.0 * np.pi, rel=1e-3)
+    a = -2.0 + 4.0 * (np.arange(9) + 0.5) / 9
+    b = -2.0 + 4.1 * (np.arange(6) + 0.5) / 6
+    m = 1.0 - a[:, None] ** 2 - b[None, :] ** 2
+    known = sweep.status == 0
+    assert known.sum() >= 50
+    assert np.isnan(sweep.value[~known]).all()
+    truth = np.sqrt(np.maximum(m, 0.0))
+    assert sweep.value[known] == pytest.approx(truth[known], abs=2e-4)
+    assert sum(sweep.tally.values()) == 54
+    assert np.array_equal(made.map.unstable, np.where(m > 0.0, 2, 0))
+    assert rb.load(rb.save(made, tmp_path / "chart.nc")) == made
+
+
+def test_a_map_by_simulation_needs_to_know_how_long():
+    model = rb.model_from_strings("still", {"x": "-x + a*b"}, parameters={"a": 0.0, "b": 0.0})
+    with pytest.raises(UsageError, match="give their duration"):
+        rb.stability_chart(model, "a", "b", BOX, quantity="amplitude", settings=QUICK)
+
+
+@pytest.fixture
+def curve(island):
+    """Return a curve of Hopf points in the plane of b and a, in this order."""
+    eq = rb.continue_equilibria(island, "a", (0.2, 3.0))
+    return rb.continue_curve(eq["H1"], ("b", "a"), ((-0.5, 0.5), (0.2, 3.0)))
+
+
+def test_curves_of_other_points_are_carried_and_saved(island, curve, tmp_path):
+    made = rb.stability_chart(island, "a", "b", BOX, settings=QUICK, curves=(curve,))
+    (over,) = made.curves
+    assert np.array_equal(over.values, curve.values[:, ::-1])
+    assert rb.load(rb.save(made, tmp_path / "chart.nc")) == made
+    again = rb.stability_chart(island, "a", "b", BOX, settings=QUICK, curves=made.curves)
+    assert again == made
+    known = curve_of(curve, ("a", "b"), {}, "lpc")
+    assert (known.kind, len(known)) == ("lpc", len(curve))
+    assert known == ChartCurve(
+        kind="lpc", name=known.name, values=known.values, stopped=known.stopped
+    )
+
+
+def test_curves_that_do_not_belong(island, curve):
+    with pytest.raises(UsageError, match=r"computed at r = 1, the chart at 1\.3"):
+        rb.stability_chart(island, "a", "b", BOX, at={"r": 1.3}, curves=(curve,))
+    with pytest.raises(UsageError, match="a curve in b and a, the chart's plane is that of a"):
+        rb.stability_chart(island, "a", "r", ((0.1, 1.0), (0.1, 1.0)), curves=(curve,))
+    with pytest.raises(UsageError, match="unknown kind of curve 'line'"):
+        curve_of(curve, ("a", "b"), {}, "line")
+    with pytest.raises(UsageError, match="leave them out of slices"):
+        rb.chart_slices(island, "a", "b", BOX, ("r", (0.5, 1.0)), curves=(curve,))
 
 
 @pytest.mark.parametrize(
