@@ -3,7 +3,7 @@
 from racs_bif.continuation.points import Point, SpecialPoint, Trace
 from racs_bif.continuation.problem import Detector, Problem
 from racs_bif.continuation.settings import StepSettings
-from racs_bif.continuation.stepping import steps
+from racs_bif.continuation.steps import steps
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.trace import trace
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -34,11 +35,14 @@ class Verdict:
         By how much to change the step.
     length : float
         Scaled length of the chord.
+    reason : str
+        Why it does not count.
     """
 
     accepted: bool
     factor: float
     length: float
+    reason: str = ""
 
 
 def judge(
@@ -73,17 +77,22 @@ def judge(
     chord = ends[1] - ends[0]
     length = scaling.norm(chord)
     if not cosine > 0.0 or length == 0.0:
-        return Verdict(accepted=False, factor=_SHORTER, length=length)
+        reason = "the tangent turned back" if length else "the step has no length"
+        return Verdict(accepted=False, factor=_SHORTER, length=length, reason=reason)
     angle = math.acos(min(cosine, 1.0))
     # Between unit vectors: 2 - 2 cos is the square of their distance.
     along = float(weights.dot(chord * (before + after))) / (length * math.sqrt(2.0 + 2.0 * cosine))
     skew = math.sqrt(max(2.0 - 2.0 * along, 0.0))
     iterations, contraction = newton
-    ratio = max(
-        angle / largest_angle, math.sqrt(skew / _SKEW), math.sqrt(contraction / CONTRACTION)
-    )
+    ratios = {
+        "the tangent turned too much": angle / largest_angle,
+        "the step does not lie along the branch": math.sqrt(skew / _SKEW),
+        "Newton's method contracts too slowly": math.sqrt(contraction / CONTRACTION),
+    }
+    worst, ratio = max(ratios.items(), key=itemgetter(1))
     if ratio > 1.0:
-        return Verdict(accepted=False, factor=max(_SHORTER, _SAFETY / ratio), length=length)
+        factor = max(_SHORTER, _SAFETY / ratio)
+        return Verdict(accepted=False, factor=factor, length=length, reason=worst)
     factor = _SAFETY / max(ratio, _SAFETY / _LONGER)
     if iterations > _USUAL_ITERATIONS:
         factor = min(factor, _USUAL_ITERATIONS / iterations)

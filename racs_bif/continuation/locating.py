@@ -23,6 +23,8 @@ _WINDOW = 1e-3
 _SHALLOW = 0.5
 _REACH = 1e-3
 _ROUNDING = 4e-16
+_APART = 1e-9
+_BEYOND = 1e-8
 
 
 Sample = tuple[float, float]
@@ -136,7 +138,8 @@ class Locator:
         )
         try:
             z = detector.refine(problem, special)
-            if z is not None and self.scaling.norm(z - point.z) <= reach:
+            scaling = self.scaling.fitting(problem.scales(point.z))
+            if z is not None and scaling.norm(z - point.z) <= reach:
                 polished = self._builder.point(z, point.tangent, point.arclength, point.iterations)
                 data = detector.data(problem, polished)
                 if data is not None:
@@ -145,7 +148,7 @@ class Locator:
         except FAILURES as error:
             self._note(place, point, f"could not be polished ({error}) at")
         self._builder.values(point)
-        return Event(0.0, point, special, detector.crossings)
+        return Event(0.0, point, special, detector.explains(special.data))
 
     def _note(self, place: int, point: Point, what: str) -> None:
         label, parameter = self._builder.detectors[place].label, self._builder.problem.parameter
@@ -228,6 +231,22 @@ def lowest_between(ends: tuple[Sample, Sample], outer: Iterable[Sample]) -> floa
 
 def _narrowest(seen: dict[float, float], before: float) -> Bracket:
     """Return the narrowest bracket among the values seen."""
-    low = max(at for at, value in seen.items() if value * before > 0.0)
-    high = min(at for at, value in seen.items() if value * before < 0.0)
+    # By signs: the product of two tiny values may vanish.
+    low = max(at for at, value in seen.items() if value and (value > 0.0) == (before > 0.0))
+    high = min(at for at, value in seen.items() if value and (value > 0.0) != (before > 0.0))
     return low, high, seen[low], seen[high]
+
+
+def at_zero(value: float, other: float, a: Point, b: Point) -> bool:
+    """Whether a function is zero at the end of a segment but for a negligible length beyond it."""
+    length = abs(b.arclength - a.arclength)
+    return abs(value) * length <= _BEYOND * abs(value - other)
+
+
+def apart(places: list[float]) -> list[float]:
+    """Return places in order, without those that nearly coincide."""
+    kept: list[float] = []
+    for at in sorted(places):
+        if not kept or at - kept[-1] > _APART:
+            kept.append(at)
+    return kept

@@ -56,6 +56,13 @@ class Problem(ABC):
     def jacobian(self, z: Array) -> Array:
         """Return the derivatives (n, n+1) of the residual; sparse only where `bordered` is too."""
 
+    def terms(self, z: Array) -> Array:
+        """Return the sizes (n,) of the terms summed in the residual, to tell rounding from error.
+
+        By default the absolute Jacobian times the absolute unknowns.
+        """
+        return np.asarray(abs(self.jacobian(z)) @ np.abs(z))  # np.abs knows no sparse arrays
+
     def bordered(self, z: Array, row: Array) -> Solver:
         """Return a solver of the matrix [jacobian; row], shape (n+1, n+1).
 
@@ -99,6 +106,14 @@ class Problem(ABC):
         """Return what is plotted, by default nothing."""
         del z
         return {}
+
+    def place(self, measure: str) -> int | None:
+        """Return where in z, counted from its end, a measure is an unknown itself; None: nowhere.
+
+        Where it is one, a wanted value of the measure is met exactly.
+        """
+        del measure
+        return None
 
     def scales(self, z: Array) -> Array:
         """Return typical magnitudes (n,) of the unknowns without the parameter, all positive.
@@ -153,6 +168,11 @@ class Detector(ABC):
     @abstractmethod
     def data(self, problem: Any, point: Point) -> dict[str, Any] | None:  # noqa: ANN401
         """Return what is known about the special point; None if it is not of this kind."""
+
+    def explains(self, data: dict[str, Any]) -> int:
+        """Return how many eigenvalues change side at the special point of this data."""
+        del data
+        return self.crossings
 
     def refine(self, problem: Any, special: SpecialPoint) -> Array | None:  # noqa: ANN401
         """Return the special point (n+1,) polished on its own defining system, or None."""

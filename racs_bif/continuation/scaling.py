@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 _GROWTH = 0.5
 _SLOPE = 1e-3
+_VAST = 1e6
 
 
 class Scaling:
@@ -42,12 +43,19 @@ class Scaling:
         """Return a norm of its own that begins like this one."""
         twin = Scaling(self._width, self._seen)
         twin._raise(self._magnitudes)
+        twin._largest = self._largest
         return twin
+
+    def fitting(self, magnitudes: Array) -> Scaling:
+        """Return this norm; where the dimension is another, a new one of these magnitudes."""
+        same = len(magnitudes) == len(self._magnitudes)
+        return self if same else Scaling(self._width, magnitudes)
 
     def restart(self, magnitudes: Array) -> None:
         """Begin anew, such as after a change of the dimension."""
         self._seen = np.array(magnitudes, dtype=float)
         self._magnitudes = self._seen.copy()
+        self._largest = float(self._seen.max())
         self._update()
 
     def _update(self) -> None:
@@ -72,7 +80,17 @@ class Scaling:
         """
         if tangent[-1] == 0.0:
             return False
-        return self._raise(_SLOPE * self._width * np.abs(tangent[:-1] / tangent[-1]))
+        return self.suppose(_SLOPE * self._width * tangent / tangent[-1])
+
+    def bend(self, before: Array, after: Array) -> float:
+        """Return how far the parameter went, in the small parts of its span of `foresee`."""
+        return abs(float(after[-1] - before[-1])) / (_SLOPE * self._width)
+
+    def suppose(self, motion: Array) -> bool:
+        """Take a motion (n + 1,) of the unknowns for their typical magnitude."""
+        magnitudes = np.abs(motion[:-1])
+        self._largest = max(self._largest, float(magnitudes.max()))
+        return self._raise(magnitudes)
 
     def _raise(self, magnitudes: Array) -> bool:
         if not (magnitudes > self._magnitudes).any():
@@ -80,6 +98,18 @@ class Scaling:
         np.maximum(self._magnitudes, magnitudes, out=self._magnitudes)
         self._update()
         return True
+
+    def outgrown(self, z: Array, tangent: Array) -> bool:
+        """Say whether a branch runs to infinity with the parameter all but standing still.
+
+        That is so where an unknown is far beyond all scales of the start, and would grow e-fold
+        before the parameter has gone a millionth of its span.
+        """
+        k = int(np.argmax(np.abs(z[:-1])))
+        if not abs(z[k]) > _VAST * self._largest:
+            return False
+        growing = z[k] * tangent[k] > 0.0
+        return bool(growing and abs(tangent[-1] * z[k]) < self._width / _VAST * abs(tangent[k]))
 
     def norm(self, v: Array) -> float:
         """Return the scaled norm of v (n+1,)."""

@@ -21,6 +21,33 @@ _EDGE = 1e-12
 _ASTRAY = 1e-6
 _ITERATIONS = 60
 _SEED = 12345
+_TINY = 1e-7
+_LEAP = 4.0
+_LEAPS = 40
+
+
+def begin(
+    problem: Problem,
+    z: Array,
+    span: tuple[float, float],
+    settings: StepSettings,
+    tangent: Array | None,
+) -> tuple[Array, Array, int, Scaling]:
+    """Return the corrected start, its unit tangent, the iterations it took and the norm.
+
+    Raises
+    ------
+    UsageError
+        If the span or the start cannot be used.
+    ConvergenceError
+        If there is no solution at the start.
+    """
+    z = checked(problem, z, span)
+    width = span[1] - span[0]
+    with np.errstate(all="ignore"):
+        if tangent is None:
+            return first(problem, z, width, settings)
+        return along(problem, z, np.array(tangent, dtype=float), width, settings)
 
 
 def checked(problem: Problem, z: Array, span: tuple[float, float]) -> Array:
@@ -70,7 +97,7 @@ def first(
         If Newton's method does not converge.
     """
     scaling = Scaling(width, problem.scales(z))
-    at = float(z[-1])
+    at, at_fold = float(z[-1]), None
     row = np.zeros(len(z))
     row[-1] = 1.0 / width
     try:
@@ -104,7 +131,10 @@ def first(
         corrected = at_fold
     corrected.z[-1] = at
     tangent = corrected.tangent
-    if scaling.foresee(tangent):
+    if at_fold is not None:
+        tangent = tangent / scaling.norm(tangent)
+        _leave_zero(problem, corrected.z, tangent, scaling, settings)
+    elif scaling.foresee(tangent):
         scaling.grow(problem.scales(corrected.z))
     tangent = tangent / scaling.norm(tangent)
     largest = int(np.argmax(scaling.weights * tangent * tangent))
@@ -150,6 +180,8 @@ def along(
         )
         raise UsageError(msg)
     tangent = tangent / scaling.norm(tangent)
+    _leave_zero(problem, z, tangent, scaling, settings)
+    tangent = tangent / scaling.norm(tangent)
     iterations = 0
     try:
         corrected = newton(
@@ -167,3 +199,39 @@ def along(
         scaling.grow(problem.scales(z))
         tangent = tangent / scaling.norm(tangent)
     return z, tangent, iterations, scaling
+
+
+def _leave_zero(
+    problem: Problem, z: Array, tangent: Array, scaling: Scaling, settings: StepSettings
+) -> None:
+    """Give unknowns that are zero the magnitude they soon have on the branch along a tangent.
+
+    A branch that breaks a symmetry leaves with the parameter standing still and the unknowns at
+    zero, so that neither says how long a step is: steps as short as those unknowns would trace
+    rounding. Trial points ever farther out tell where the parameter begins to move.
+    """
+    leading = int(np.argmax(scaling.weights[:-1] * tangent[:-1] ** 2))
+    if problem.scales(z)[leading] > _TINY:
+        return
+    trial, reach = scaling.copy(), 1.0
+    for _ in range(_LEAPS):
+        motion = reach * tangent
+        trial.suppose(motion)
+        weights = trial.weights
+        try:
+            with np.errstate(all="ignore"):
+                corrected = newton(
+                    problem,
+                    z + motion,
+                    weights * tangent,
+                    weights,
+                    tolerance=settings.tolerance,
+                    iterations=settings.iterations,
+                )
+        except FAILURES:
+            return
+        scaling.suppose(motion)
+        scaling.suppose(corrected.z - z)
+        if scaling.bend(z, corrected.z) >= 1.0:
+            return
+        reach *= _LEAP

@@ -11,23 +11,22 @@ import numpy as np
 from racs_bif.continuation.building import FAILURES, Builder
 from racs_bif.continuation.checking import CONTRACTION, judge
 from racs_bif.continuation.segment import Segment
-from racs_bif.continuation.settings import StepSettings
-from racs_bif.continuation.start import along, checked, first
 from racs_bif.continuation.stopped import Stopped
+from racs_bif.continuation.told import LOG
 from racs_bif.errors import ConvergenceError
 from racs_bif.numerics.newton import Corrected, NotFiniteError, newton
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
-
     from racs_bif.continuation.points import Array, Point
-    from racs_bif.continuation.problem import Bound, Problem
+    from racs_bif.continuation.problem import Bound
     from racs_bif.continuation.scaling import Scaling
+    from racs_bif.continuation.settings import StepSettings
 
 _FIRST_CLOSABLE = 4
 _SAME = 1e-6
 _SAME_DIRECTION = 0.99
 _STRETCH = 1.1
+_ROUNDED = 1e-12
 
 
 def _cause(error: Exception) -> Stopped:
@@ -89,6 +88,7 @@ class Stepper:
         self.stopped: Stopped | None = None
         self.message = ""
         self._accepted = 0
+        self._curvature = math.inf
         self._refreshed = False
 
     def advance(self) -> Point | None:
@@ -106,6 +106,7 @@ class Stepper:
                     point, cause = None, _cause(error)
                     reason = str(error) or type(error).__name__
                     self.step *= 0.5
+                    LOG.debug("      rejected, next step %.3E: %s", self.step, reason)
                 else:
                     if point is not None:
                         return point
@@ -160,6 +161,8 @@ class Stepper:
         z, tangent = self.point.z, self._tangent
         longest = self.scaling.longest(z, tangent, self._settings.maximum)
         step = self.step = min(self.step, longest)
+        name, at = self._problem.parameter, self.point.parameter
+        LOG.debug("      trial step %.3E from %s = %.10g", step, name, at)
         leaving, bound = self._exit()
         if leaving <= _STRETCH * step:
             # The last step is solved with the parameter held at the end of the span.
@@ -200,15 +203,32 @@ class Stepper:
         row = np.zeros(len(prediction))
         row[place] = 1.0 / (high - low)
         self.step = min(self.step, self.scaling.norm(prediction - self.point.z))
-        corrected = self._correct(prediction, row, CONTRACTION)
-        corrected.z[place] = end
-        along_branch = self.scaling.weights.dot(self._tangent * corrected.tangent)
-        if along_branch < 0.0:
-            corrected.tangent = -corrected.tangent
-        if self._outside(corrected.z):
-            self.step *= 0.5
-            return None
-        return self._accept(corrected, held=end)
+        try:
+            corrected = self._correct(prediction, row, CONTRACTION)
+        except FAILURES:
+            if not self._solved(prediction):
+                raise
+        else:
+            corrected.z[place] = end
+            along_branch = self.scaling.weights.dot(self._tangent * corrected.tangent)
+            if along_branch < 0.0:
+                corrected.tangent = -corrected.tangent
+            if self._outside(corrected.z):
+                self.step *= 0.5
+                LOG.debug("      rejected, next step %.3E: beyond another bound", self.step)
+                return None
+            point = self._accept(corrected, held=end)
+            if point is not None or not self._solved(prediction):
+                return point
+        # Where branches cross exactly at the end of the span no matrix is regular.
+        return self._accept(Corrected(prediction, self._tangent.copy(), 0, 0.0), held=end)
+
+    def _solved(self, z: Array) -> bool:
+        """Whether a prediction is a solution as it is: by its residual and the curvature."""
+        if self._curvature * self.scaling.norm(z - self.point.z) ** 2 > _ROUNDED:
+            return False
+        residual = self._problem.residual(z)
+        return bool(np.all(np.abs(residual) <= _ROUNDED * self._problem.terms(z)))
 
     def _outside(self, z: Array) -> bool:
         """Whether a solution on one bound is beyond another."""
@@ -227,6 +247,7 @@ class Stepper:
         )
         if not verdict.accepted:
             self.step *= verdict.factor
+            LOG.debug("      rejected, next step %.3E: %s", self.step, verdict.reason)
             return None
         point = self._builder.point(
             corrected.z,
@@ -238,6 +259,7 @@ class Stepper:
         self.step *= verdict.factor
         self._refreshed = False
         self._accepted += 1
+        self._curvature = scaling.norm(tangent - self._tangent) / verdict.length
         if closed is not None:
             self.stopped = Stopped.CLOSED
             self.point = closed
@@ -251,6 +273,8 @@ class Stepper:
         """Make ready for the next step."""
         scaling, problem = self.scaling, self._problem
         self.stopped = problem.ends(point)
+        if self.stopped is None and scaling.outgrown(point.z, tangent):
+            self.stopped = Stopped.INFINITY
         adapted = problem.adapt(point.z, tangent) if self.stopped is None else None
         if adapted is not None:
             z, tangent = adapted
@@ -289,82 +313,3 @@ class Stepper:
 
 def _first(pair: tuple[Any, ...]) -> Any:  # noqa: ANN401 - numbers, or tuples of them
     return pair[0]
-
-
-def begin(
-    problem: Problem,
-    z: Array,
-    span: tuple[float, float],
-    settings: StepSettings,
-    tangent: Array | None,
-) -> tuple[Array, Array, int, Scaling]:
-    """Return the corrected start, its unit tangent, the iterations it took and the norm.
-
-    Raises
-    ------
-    UsageError
-        If the span or the start cannot be used.
-    ConvergenceError
-        If there is no solution at the start.
-    """
-    z = checked(problem, z, span)
-    width = span[1] - span[0]
-    with np.errstate(all="ignore"):
-        if tangent is None:
-            return first(problem, z, width, settings)
-        return along(problem, z, np.array(tangent, dtype=float), width, settings)
-
-
-def steps(
-    problem: Problem,
-    z: Array,
-    span: tuple[float, float],
-    settings: StepSettings | None = None,
-    *,
-    direction: int = 1,
-    tangent: Array | None = None,
-) -> Generator[Point, None, Stopped]:
-    """Yield the points of a branch one by one, without looking for events.
-
-    Parameters
-    ----------
-    problem : Problem
-        What is solved.
-    z : array (n + 1,)
-        A guess of the first point; solved at its parameter.
-    span : tuple of float
-        Lowest and highest value of the parameter.
-    settings : StepSettings, optional
-        Of the step control.
-    direction : int
-        +1 to set off with the parameter increasing, or along `tangent` if given; -1 the other way.
-    tangent : array (n + 1,), optional
-        Direction in which to set off. The start is then corrected across it.
-
-    Yields
-    ------
-    Point
-        The start, then every accepted point.
-
-    Returns
-    -------
-    Stopped
-        Why it ended, as the generator's value.
-
-    Raises
-    ------
-    UsageError
-        If the span or the start cannot be used.
-    ConvergenceError
-        If there is no solution at the start.
-    """
-    settings = settings or StepSettings()
-    corrected, unit, iterations, scaling = begin(problem, z, span, settings, tangent)
-    builder = Builder(problem, (), 0)
-    start = builder.point(corrected, unit * direction, 0.0, iterations)
-    stepper = Stepper(builder, scaling, start, span, settings)
-    yield start
-    while (point := stepper.advance()) is not None:
-        yield point
-    assert stepper.stopped is not None
-    return stepper.stopped

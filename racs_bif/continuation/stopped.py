@@ -42,8 +42,35 @@ class Stopped(Enum):
         "part; follow the folds instead."
     )
     VANISHED = "The orbit shrank to an equilibrium: look for a Hopf point there."
+    HOPF = "The branch of orbits arrived at a Hopf point: it is complete."
+    HALVED = "The orbits became orbits of half the period, at a period doubling: it is complete."
+    KNOWN = "The branch runs onto one that is known already; the rest of it is there."
+    COLLAPSED = (
+        "Newton's method fell from an orbit onto an equilibrium that is no Hopf point; the points "
+        "before that are kept: lower the largest step, or use a finer mesh."
+    )
+    CONNECTION = "The orbits approach a connection of equilibria, and the period grows for ever."
+    INFINITY = (
+        "The branch runs to infinity while the parameter all but stands still: there is no more of "
+        "it."
+    )
+    FOUND = "What was looked for was found; the branch was not followed beyond it."
 
     @property
     def complete(self) -> bool:
-        """Whether the branch ended where it was meant to, at its span or closed."""
-        return self in {Stopped.SPAN, Stopped.CLOSED}
+        """Whether the branch ended where it was meant to, or where there is no more of it."""
+        return self in _COMPLETE
+
+
+_COMPLETE = frozenset(
+    {
+        Stopped.SPAN,
+        Stopped.CLOSED,
+        Stopped.HOPF,
+        Stopped.HALVED,
+        Stopped.KNOWN,
+        Stopped.CONNECTION,
+        Stopped.INFINITY,
+        Stopped.FOUND,
+    }
+)

@@ -49,24 +49,39 @@ class Target(Detector):
         return {"name": self.name, "target": self.target}
 
 
-class ParameterTarget(Target):
-    """A wanted value of the continuation parameter, met exactly."""
+class HeldTarget(Target):
+    """A wanted value of something that is an unknown itself, met exactly.
 
-    def __init__(self, name: str, target: float, settings: StepSettings, width: float) -> None:
+    Parameters
+    ----------
+    name, target
+        As for `Target`.
+    place : int
+        Where it is in z, counted from the end.
+    settings : StepSettings
+        How closely to solve.
+    width : float
+        Width of the parameter's span.
+    """
+
+    def __init__(
+        self, name: str, target: float, place: int, settings: StepSettings, width: float
+    ) -> None:
         super().__init__(name, target)
-        self._settings, self._width = settings, width
+        self._place, self._settings, self._width = place, settings, width
 
     def value(self, problem: Problem, point: Point) -> float:
-        """Return how far the parameter is above its target."""
+        """Return how far the unknown is above its target."""
         del problem
-        return float(point.z[-1]) - self.target
+        return float(point.z[self._place]) - self.target
 
     def refine(self, problem: Problem, special: SpecialPoint) -> Array | None:
-        """Solve with the parameter held at its target."""
+        """Solve with the unknown held at its target."""
         z = special.z.copy()
-        z[-1] = self.target
+        z[self._place] = self.target
+        scale = self._width if self._place == -1 else abs(self.target) or 1.0
         row = np.zeros(len(z))
-        row[-1] = 1.0 / self._width
+        row[self._place] = 1.0 / scale
         try:
             corrected = newton(
                 problem,
@@ -78,8 +93,15 @@ class ParameterTarget(Target):
             )
         except FAILURES:
             return None
-        corrected.z[-1] = self.target
+        corrected.z[self._place] = self.target
         return corrected.z
+
+
+class ParameterTarget(HeldTarget):
+    """A wanted value of the continuation parameter."""
+
+    def __init__(self, name: str, target: float, settings: StepSettings, width: float) -> None:
+        super().__init__(name, target, -1, settings, width)
 
 
 def detectors_of(
@@ -114,7 +136,12 @@ def detectors_of(
                     raise UsageError(msg)
                 found.append(ParameterTarget(name, value, settings, high - low))
             elif name in measures:
-                found.append(Target(name, value))
+                place = problem.place(name)
+                found.append(
+                    Target(name, value)
+                    if place is None
+                    else HeldTarget(name, value, place, settings, high - low)
+                )
             else:
                 known = ", ".join([problem.parameter, *measures])
                 msg = f"no '{name}' to want values of; there are: {known}"

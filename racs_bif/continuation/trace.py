@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from racs_bif.continuation.building import Builder
 from racs_bif.continuation.points import Array, Point, Trace
 from racs_bif.continuation.settings import StepSettings
-from racs_bif.continuation.stepping import Stepper, begin
+from racs_bif.continuation.start import begin
+from racs_bif.continuation.stepping import Stepper
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.targets import Target, Targets, detectors_of
+from racs_bif.continuation.told import Table, next_number, table
 from racs_bif.continuation.watching import Node, Watch
 from racs_bif.errors import ConvergenceError, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from racs_bif.continuation.problem import Detector, Problem
+
+
+Until = Callable[[Point, Point], Stopped | None]
+"""Sees every step and says whether the branch ends with it, and why."""
 
 
 @dataclass(slots=True)
@@ -41,6 +48,7 @@ def trace(  # noqa: PLR0913 - what a branch is made of
     direction: int | None = None,
     tangent: Array | None = None,
     progress: Callable[[Point], object] | None = None,
+    until: Until | None = None,
 ) -> Trace:
     """Trace a branch of solutions through a start, over a span of the parameter.
 
@@ -66,6 +74,9 @@ def trace(  # noqa: PLR0913 - what a branch is made of
         Direction in which to set off, where branches meet; the start is corrected across it.
     progress : callable, optional
         Called with every point accepted.
+    until : callable, optional
+        Called with every step, the point before and the point accepted; returns why the branch ends
+        there, or None. The point before has arclength 0 where a walk begins.
 
     Returns
     -------
@@ -92,18 +103,19 @@ def trace(  # noqa: PLR0913 - what a branch is made of
     start = builder.point(corrected, forward, 0.0, iterations)
     notes: list[str] = []
     walks: list[_Walk] = []
+    number = next_number()
     for sense in (1, -1)[: len(senses)]:
         own = scaling.copy()
         stepper = Stepper(builder, own, start, span, settings, sense)
         watch = Watch(builder, own, settings, notes, replace(start))
         if progress is not None and not walks:
             progress(start)
-        walks.append(_walk(stepper, watch, progress))
+        walks.append(_walk(stepper, watch, progress, until, table(problem, number, sense)))
         if walks[-1].stopped in {Stopped.CLOSED, Stopped.INTERRUPTED}:
             break
     if tangent is not None and iterations == 0 and all(len(w.watch.nodes) == 1 for w in walks):
         _check_left(problem, walks)
-    _settle_start(walks, builder)
+    _settle_start(walks, builder, at_edge=start.parameter in span)
     return _assemble(walks, notes)
 
 
@@ -119,7 +131,13 @@ def _senses(
     return [inward if tangent[-1] > 0.0 else -inward]
 
 
-def _walk(stepper: Stepper, watch: Watch, progress: Callable[[Point], object] | None) -> _Walk:
+def _walk(
+    stepper: Stepper,
+    watch: Watch,
+    progress: Callable[[Point], object] | None,
+    until: Until | None,
+    told: Table | None,
+) -> _Walk:
     """Walk in one direction to its end."""
     try:
         while True:
@@ -128,15 +146,24 @@ def _walk(stepper: Stepper, watch: Watch, progress: Callable[[Point], object] | 
             if point is None:
                 break
             watch.feed(before, point, norm)
+            if told is not None:
+                told.tell(watch.nodes)
             if watch.divided:
                 stepper.step *= 0.5
             if progress is not None:
                 progress(point)
-        watch.finish(closed=stepper.stopped is Stopped.CLOSED)
+            if until is not None:
+                # a reason of its own says more than the problem's
+                stepper.stopped = until(before, point) or stepper.stopped
+        watch.finish(stepper.stopped)
+        walk = _Walk(watch, stepper.stopped or Stopped.STEP, stepper.message)
     except KeyboardInterrupt:
         watch.abandon()
-        return _Walk(watch, Stopped.INTERRUPTED, "")
-    return _Walk(watch, stepper.stopped or Stopped.STEP, stepper.message)
+        walk = _Walk(watch, Stopped.INTERRUPTED, "")
+    if told is not None:
+        told.tell(watch.nodes)
+        told.end(walk.stopped)
+    return walk
 
 
 def _check_left(problem: Problem, walks: list[_Walk]) -> None:
@@ -150,8 +177,11 @@ def _check_left(problem: Problem, walks: list[_Walk]) -> None:
         raise ConvergenceError(msg)
 
 
-def _settle_start(walks: list[_Walk], builder: Builder) -> None:
-    """Decide about test functions that are zero at the start, by their signs around it."""
+def _settle_start(walks: list[_Walk], builder: Builder, *, at_edge: bool) -> None:
+    """Decide about test functions that are zero at the start, by their signs around it.
+
+    At the edge of the span there is one side only, and zero is zero but for rounding.
+    """
     forward = walks[0].watch
     for place, detector in enumerate(builder.detectors):
         exact = builder.value(place, forward.nodes[0][0]) == 0.0
@@ -162,7 +192,7 @@ def _settle_start(walks: list[_Walk], builder: Builder) -> None:
             before = walks[1].watch.first[place] if len(walks) > 1 else 0
         doubtful = any(walk.watch.doubtful[place] for walk in walks)
         crossed = doubtful and before * after < 0
-        ended = exact and (after == 0) != (before == 0)
+        ended = (exact or (at_edge and doubtful)) and (after == 0) != (before == 0)
         touched = exact and isinstance(detector, Target)
         if crossed or ended or touched:
             forward.mark(place, 0)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from racs_bif.continuation.building import FAILURES, Builder
 from racs_bif.continuation.counting import unexplained
-from racs_bif.continuation.locating import Event, Locator, lowest_between
+from racs_bif.continuation.locating import Event, Locator, apart, at_zero, lowest_between
 from racs_bif.continuation.points import Point, SpecialPoint
+from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.targets import ParameterTarget
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ _FADING = 0.1
 _FLOOR = 1e-6
 _MOST_UNEXPLAINED = 20
 _REACH = 1e-3
-_APART = 1e-9
 
 Node = tuple[Point, SpecialPoint | None]
 """A point of the branch and, where it is an event, what is known about it."""
@@ -97,6 +97,7 @@ class Watch:
         self._sizes = [abs(value) for value in self._values]
         self._pending: _Pending | None = None
         self._arrived: list[Point] = []
+        self._critical_end = False
         self.nodes: list[Node] = [(start, None)]
         self.first = [0] * len(self._values)
         self.signs = [0] * len(self._values)
@@ -112,11 +113,15 @@ class Watch:
         if last is None:
             for place in self._places:
                 self.signs[place] = self._sign(place, self._values[place], values[place])
-            self.first = list(self.signs)
             self.doubtful = [
-                sign == 0 and not math.isnan(self._values[place])
+                not math.isnan(self._values[place])
+                and (sign == 0 or at_zero(self._values[place], values[place], b, a))
                 for place, sign in enumerate(self.signs)
             ]
+            self.signs = [
+                0 if doubt else sign for doubt, sign in zip(self.doubtful, self.signs, strict=True)
+            ]
+            self.first = list(self.signs)
             earlier = None
         else:
             self._settle(last, (b.arclength, values))
@@ -124,17 +129,32 @@ class Watch:
         self._pending = _Pending(a, b, self._values, values, scaling, earlier)
         self._values = values
 
-    def finish(self, *, closed: bool) -> None:
-        """Settle the last segment; a test function that is exactly zero at an end has its event."""
+    def finish(self, stopped: Stopped | None) -> None:
+        """Settle the last segment; a test function that is zero at an end has its event there."""
         if self._pending is None:
             return
         last = self._pending
+        ending = [] if stopped is Stopped.CLOSED else self._ending(last, stopped is Stopped.SPAN)
+        ending = [place for place in ending if self.signs[place]]
+        for place in ending:
+            last.after[place] = math.nan
+        self._critical_end = any(self._builder.detectors[place].crossings for place in ending)
         self._settle(last, None)
         self._pending = None
-        if not closed:
-            for place in self._places:
-                if last.after[place] == 0.0 and self.signs[place]:
-                    self.mark(place, len(self.nodes) - 1)
+        for place in ending:
+            self.mark(place, len(self.nodes) - 1)
+
+    def _ending(self, last: _Pending, landed: bool) -> list[int]:  # noqa: FBT001 - one caller
+        """Return which test functions are zero at the end; at that of the span but for rounding."""
+        found = []
+        for place in self._places:
+            value, before = last.after[place], last.before[place]
+            rounded = landed and (
+                self._sign(place, value, math.nan) == 0 or at_zero(value, before, last.a, last.b)
+            )
+            if value == 0.0 or (rounded and not math.isnan(value)):
+                found.append(place)
+        return found
 
     def abandon(self) -> None:
         """Keep the points not yet looked at, without their events."""
@@ -239,7 +259,7 @@ class Watch:
         found = [self._locator.dip(segment, place, guess) for place, guess in dips]
         if turned:
             found.append(self._turned(segment, *values))
-        return [segment.known(at) for at in _apart([at for at in found if at is not None])]
+        return [segment.known(at) for at in apart([at for at in found if at is not None])]
 
     def _turned(self, segment: Segment, before: list[float], after: list[float]) -> float | None:
         """Return where the parameter turns back, if that is beyond a value wanted."""
@@ -285,6 +305,7 @@ class Watch:
         nodes: list[Node] = [(event.point, event.special) for event in events]
         at_start = a.arclength == self.nodes[0][0].arclength
         unchecked = not self._checked or self._mismatches >= _MOST_UNEXPLAINED
+        unchecked = unchecked or self._critical_end
         if unchecked or (at_start and self._critical_start()):
             return nodes
         reason = unexplained(self._problem, a, b, [event.crossings for event in events])
@@ -318,12 +339,3 @@ class Watch:
         """Whether eigenvalues are on the axis at the start: it counts for neither side."""
         detectors = self._builder.detectors
         return any(self.doubtful[place] and detectors[place].crossings for place in self._places)
-
-
-def _apart(places: list[float]) -> list[float]:
-    """Return places in order, without those that nearly coincide."""
-    kept: list[float] = []
-    for at in sorted(places):
-        if not kept or at - kept[-1] > _APART:
-            kept.append(at)
-    return kept

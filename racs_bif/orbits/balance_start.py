@@ -39,6 +39,8 @@ _REACH: Final = 0.05
 """Share of the parameter that the first scale of the amplitude moves it by."""
 _BEND: Final = 0.5
 """Largest second order of the orbit over its first at that scale."""
+_ZERO: Final = 1e-9
+"""A parameter below it is zero but for rounding, and says nothing about its own magnitude."""
 _STILL: Final = 1e-4
 """Unknowns that move less than this share of the others do not set a scale of their own."""
 
@@ -283,7 +285,7 @@ def _amplitude(hopf: ExactHopf, expansion: ExactExpansion) -> float:
     size = float(np.linalg.norm(hopf.q))
     bend = float(2.0 * np.linalg.norm(expansion.second) + np.linalg.norm(expansion.mean))
     curvature = abs(expansion.parameter)
-    reach = _REACH * (abs(hopf.value) or 1.0)
+    reach = _REACH * (abs(hopf.value) if abs(hopf.value) > _ZERO else 1.0)
     limits = [1.0 / size] if bend == curvature == 0.0 else []
     if bend > 0.0:
         limits.append(_BEND * size / bend)

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.orbits.assembly import TAIL
+from racs_bif.orbits.collocated import CollocatedProblem
 from racs_bif.orbits.collocation_mesh import better_intervals
 from racs_bif.orbits.collocation_settings import CollocationSettings
-from racs_bif.orbits.equations import Collocated, Equations
-from racs_bif.orbits.floquet import Floquet, floquet
-from racs_bif.orbits.folded import Folds
+from racs_bif.orbits.equations import Equations
 from racs_bif.orbits.gauss import gauss
 from racs_bif.orbits.history import History
-from racs_bif.orbits.intervals import GROWTH, BorderedIntervals, Linearised
+from racs_bif.orbits.intervals import BorderedIntervals
 from racs_bif.orbits.piecewise import Piecewise, equidistant
 from racs_bif.orbits.polishing import direction, polished
-from racs_bif.orbits.problem import OrbitProblem
 from racs_bif.orbits.sparse_jacobian import sparse_jacobian
 
 if TYPE_CHECKING:
@@ -31,14 +29,8 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
 
-_SAME: Final = 1e-9
-"""Relative distance below which the linearised equations are taken over: the root mean square of
-the states, the period and the parameter."""
-_FEWEST: Final = 4
-"""Fewest products of transition matrices for the multipliers, so that small ones are not lost."""
 
-
-class CollocationProblem(OrbitProblem):
+class CollocationProblem(CollocatedProblem):
     """Periodic orbits x' = f(x, p) as piecewise polynomials, collocated at Gauss points.
 
     The unknowns are z = (X, T, g, lambda): the values X (N, m, n) at the first m of m + 1
@@ -77,20 +69,19 @@ class CollocationProblem(OrbitProblem):
         *,
         turns: int = 1,
     ) -> None:
+        super().__init__()
         self.name = "periodic orbits by collocation"
         self.parameter = path.names[0]
         self.field = field
         self.path = path
         self.settings = settings or CollocationSettings()
+        self.trivial = self.settings.trivial
         self.turns = turns
         self.equations = Equations(field, path)
         self.history = History(reference, curve)
         self._size = len(field.states)
         self._degree = self.settings.degree
         self._gauss = gauss(self._degree)
-        self._found: tuple[Array, Collocated] | None = None
-        self._base: tuple[Array, Linearised] | None = None
-        self._floquet: tuple[Array, Floquet] | None = None
         self._first_period: float | None = None
 
     # ------------------------------------------------------------------ the unknowns
@@ -103,9 +94,17 @@ class CollocationProblem(OrbitProblem):
         """Return the values at the nodes (N, m, n)."""
         return z[:-TAIL].reshape(-1, self._degree, self._size)
 
+    def unknown_states(self, z: Array) -> Array:
+        """Return the values at the nodes (N m, n)."""
+        return self.nodes(z).reshape(-1, self._size)
+
     def period(self, z: Array) -> float:
         """Return the period, in units of time."""
         return float(z[-3])
+
+    def active(self, z: Array) -> float:
+        """Return the active parameter."""
+        return float(z[-1])
 
     def reference(self, z: Array) -> Reference:
         """Return the mesh and phase condition that `z` belongs to.
@@ -123,22 +122,18 @@ class CollocationProblem(OrbitProblem):
             )
         return reference
 
-    def curve(self, z: Array) -> Piecewise:
-        """Return the orbit as a function of time."""
-        return self._at(z).curve
-
     # ------------------------------------------------------------------ the equations
 
     def residual(self, z: Array) -> Array:
         """Return the defects (N m n) over the scales, the phase, and the number's distance."""
-        at, reference = self._at(z), self.reference(z)
+        at, reference = self.at(z), self.reference(z)
         defects = at.defects() / reference.scales
         phase = reference.phase(at.curve.stages())
         return np.concatenate((defects.ravel(), (phase, z[-2] - np.round(z[-2]))))
 
     def jacobian(self, z: Array) -> Any:  # noqa: ANN401 - scipy's arrays have no types
         """Return the exact derivative (N m n + 2, N m n + 3) of the residual, a sparse array."""
-        at, reference = self._at(z), self.reference(z)
+        at, reference = self.at(z), self.reference(z)
         jacobians = self.equations.jacobians(at)
         return sparse_jacobian(at, jacobians, self.equations.columns(at), reference)
 
@@ -181,61 +176,14 @@ class CollocationProblem(OrbitProblem):
         length = float(np.hypot(np.linalg.norm(nodes), np.linalg.norm(unknowns)))
         return solver.sign() * float(np.linalg.norm(right)) / length
 
-    def _at(self, z: Array) -> Collocated:
-        """Return the equations at `z`, kept until they are asked for elsewhere."""
-        if self._found is None or not np.array_equal(self._found[0], z):
-            curve = Piecewise(self.reference(z).mesh, self.nodes(z).copy())
-            at = self.equations.collocated(curve, self.period(z), float(z[-1]))
-            self._found = (np.array(z), at)
-        return self._found[1]
-
-    def linearised(self, z: Array) -> Linearised:
-        """Return the linearised equations at `z`, or where they are known within rounding of it."""
-        if self._base is not None:
-            known, linearised = self._base
-            if len(known) == len(z) and self.reference(known).mesh is self.reference(z).mesh:
-                distance = (z - known) / self.magnitudes(z)
-                states = float(np.linalg.norm(distance[:-TAIL])) / len(z) ** 0.5
-                if max(states, abs(float(distance[-3])), abs(float(distance[-1]))) < _SAME:
-                    return linearised
-        linearised = self.equations.linearised(self._at(z), self.reference(z).scales)
-        self._base = (np.array(z), linearised)
-        return linearised
-
     # ------------------------------------------------------------------ what the engine asks
 
     def degenerate(self, z: Array) -> bool:
         """Return whether there is no amplitude, or it has changed sign where the branch began."""
-        reference = self.reference(z)
-        departures = self._departures(self.curve(z))
-        relative = np.abs(departures).max(axis=(0, 1)) / reference.scales
-        if 2.0 * float(relative.max()) < self.settings.smallest:
+        if self.at_crossing(z):
             return True
-        if reference.degenerate:
-            return False
-        before = self._departures(self.history.curve(z[-2]))
-        weights = reference.mesh.widths[:, None, None] / reference.scales**2
-        return float(np.sum(weights * departures * before)) < 0.0
-
-    def _departures(self, curve: Piecewise) -> Array:
-        """Return what makes it a proper orbit (N, m, n): x less its mean, or less its other half.
-
-        Half of the difference between the halves, so that both kinds are amplitudes.
-        """
-        if self.turns == 1:
-            return np.asarray(curve.nodes - curve.mean())
-        times = equidistant(curve.mesh, self._degree)
-        return np.asarray(0.5 * (curve.nodes - curve((times + 1.0 / self.turns) % 1.0)))
-
-    def floquet(self, z: Array) -> Floquet:
-        """Return the multipliers, from the transition matrices of the intervals."""
-        if self._floquet is None or not np.array_equal(self._floquet[0], z):
-            scales = self.reference(z).scales
-            folds = Folds(self.linearised(z).transitions, GROWTH, _FEWEST)
-            starts = folds.begins(self.nodes(z)[:, 0])
-            velocities = self.equations.rates(starts, float(z[-1])) / scales
-            self._floquet = (np.array(z), floquet(folds.products, velocities))
-        return self._floquet[1]
+        before = self.history.curve(z[-2])
+        return self.vanishing(z, before, self.settings.smallest, self.turns)
 
     def scales(self, z: Array) -> Array:
         """Return the scales of the states, the same for all nodes, the period, and 1."""
@@ -252,7 +200,7 @@ class CollocationProblem(OrbitProblem):
             return Stopped.PERIOD
         reference = self.reference(z)
         if self.degenerate(z):
-            return None if reference.degenerate else Stopped.VANISHED
+            return None if reference.degenerate else self.vanished
         full = reference.mesh.steps >= self.settings.most_intervals
         if full and self.floquet(z).health > self.settings.trivial:
             return Stopped.ACCURACY
@@ -271,7 +219,7 @@ class CollocationProblem(OrbitProblem):
                 z, tangent = self.on_mesh(z, mesh, tangent)
         followed = np.array(z)
         followed[-2] = self.history.add(self.curve(z), self._scales_of(z))
-        self._found = (followed, self._at(z))
+        self._found = (followed, self.at(z))
         return followed, self._in_phase(followed, tangent)
 
     def _scales_of(self, z: Array) -> Array:
@@ -335,11 +283,3 @@ class CollocationProblem(OrbitProblem):
         error = float(curve.errors(self._scales_of(z)).max())
         numbers = {"intervals": float(curve.mesh.steps), "mesh error": error}
         return super().measures(z) | numbers
-
-    def extrema(self, z: Array) -> tuple[Array, Array]:
-        """Return the highest and the lowest values (n,) of the states."""
-        return self.curve(z).extrema()
-
-    def sample(self, z: Array, fractions: Array) -> Array:
-        """Return the states (n, m) at fractions (m,) of the period."""
-        return np.ascontiguousarray(self.curve(z)(fractions).T)

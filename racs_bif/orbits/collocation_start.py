@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -17,6 +17,7 @@ from racs_bif.orbits.mesh import Mesh
 from racs_bif.orbits.piecewise import Piecewise, equidistant
 from racs_bif.orbits.reference import Reference
 from racs_bif.orbits.seeds import Seed, hopf_seed, samples_seed
+from racs_bif.orbits.switching import crossing, leave
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -74,7 +75,7 @@ def collocated_from(
         How orbits are resolved.
     """
     settings = settings or CollocationSettings()
-    mesh = Mesh.uniform(settings.intervals, 1)
+    mesh = seed.mesh(settings.intervals, settings.degree + 1)
     times = equidistant(mesh, settings.degree)
     curve = Piecewise(mesh, np.array(seed.points(times)))
     at_gauss = mesh.times(curve.gauss.abscissae)
@@ -166,31 +167,26 @@ def doubled(problem: CollocationProblem, z: Array) -> CollocationStart:
         If no multiplier is -1 there.
     """
     mode = _mode(problem, z, -1.0)
-    curve, reference, settings = problem.curve(z), problem.reference(z), problem.settings
+    curve, settings = problem.curve(z), problem.settings
     nodes = curve.mesh.nodes
     mesh = Mesh(np.concatenate((0.5 * nodes, 0.5 + 0.5 * nodes[1:])), 1)
     mesh.nodes[-1] = 1.0
-    twice = Piecewise(mesh, np.concatenate((curve.nodes, curve.nodes)))
-    first = reference_of(twice, reference.scales)
-    first = Reference(
-        mesh,
-        first.stages,
-        first.velocities,
-        reference.scales,
-        degenerate=True,
-        quadrature=first.quadrature,
-    )
-    longer = CollocationProblem(problem.field, problem.path, first, twice, settings, turns=2)
-    start = longer.join(twice.nodes, 2.0 * problem.period(z), float(z[-1]))
-    tangent = longer.join(np.concatenate((mode, -mode)), 0.0, 0.0)
-    return CollocationStart(longer, start, tangent)
+    both = Piecewise(mesh, np.concatenate((curve.nodes, curve.nodes)))
+
+    def twice(scales: Array) -> tuple[CollocationProblem, Array]:
+        first = replace(reference_of(both, scales), degenerate=True)
+        longer = CollocationProblem(problem.field, problem.path, first, both, settings, turns=2)
+        return longer, longer.join(both.nodes, 2.0 * problem.period(z), float(z[-1]))
+
+    longer, start = twice(problem.reference(z).scales)
+    across = longer.join(np.concatenate((mode, -mode)), 0.0, 0.0)
+    found = leave(longer, start, across, twice)
+    assert isinstance(found.problem, CollocationProblem)
+    return CollocationStart(found.problem, found.z, found.direction)
 
 
 def switched(problem: CollocationProblem, z: Array, tangent: Array) -> CollocationStart:
     """Start the other branch at a point where two branches of orbits cross (BPC).
-
-    It is left in the direction, among those in which the equations allow to leave, that is
-    orthogonal to the branch known: exact where a symmetry is broken, and near enough elsewhere.
 
     Parameters
     ----------
@@ -204,19 +200,49 @@ def switched(problem: CollocationProblem, z: Array, tangent: Array) -> Collocati
     UsageError
         If branches do not cross there.
     """
-    magnitudes = problem.magnitudes(z)
-    solve = problem.bordered(z, tangent / magnitudes**2)
-    found = np.random.default_rng(_SEED).standard_normal(len(z))
-    found[-2] = 0.0
-    for _ in range(2):
-        before = float(np.linalg.norm(found))
-        step = solve(found)
-        size = float(np.linalg.norm(step / magnitudes))
-        found = step / magnitudes / size
-    if size < 1.0 / _SINGULAR * before:
-        raise UsageError("no other branch of periodic orbits crosses this one here")
-    found *= magnitudes * _AMPLITUDE * np.sqrt(len(z))
-    return CollocationStart(problem, z, found)
+
+    def rescaled(scales: Array) -> tuple[CollocationProblem, Array]:
+        start = collocated_through(problem, z, problem.path, float(z[-1]), scales=scales)
+        return start.problem, start.z
+
+    found = crossing(problem, z, tangent, rescaled)
+    assert isinstance(found.problem, CollocationProblem)
+    return CollocationStart(found.problem, found.z, found.direction)
+
+
+def collocated_through(
+    problem: CollocationProblem,
+    z: Array,
+    path: ParameterPath,
+    value: float,
+    settings: CollocationSettings | None = None,
+    scales: Array | None = None,
+) -> CollocationStart:
+    """Start at an orbit of another branch, on its mesh, with a parameter of one's own.
+
+    Parameters
+    ----------
+    problem : CollocationProblem
+        The problem that the orbit is a solution of.
+    z : array (N m n + 3,)
+        The orbit.
+    path : ParameterPath
+        Where the active parameter leads, which may be another.
+    value : float
+        Its value at the orbit.
+    settings : CollocationSettings, optional
+        How orbits are resolved; by default as on the other branch.
+    scales : array, optional
+        Scales of the unknown states; by default as on the other branch.
+    """
+    chosen, curve = settings or problem.settings, problem.curve(z)
+    if chosen.degree != problem.settings.degree:
+        mesh = curve.mesh
+        curve = Piecewise(mesh, curve(equidistant(mesh, chosen.degree)))
+    scales = problem.reference(z).scales if scales is None else scales
+    reference = reference_of(curve, scales)
+    own = CollocationProblem(problem.field, path, reference, curve, chosen)
+    return CollocationStart(own, own.join(curve.nodes, problem.period(z), value), None)
 
 
 def _mode(problem: CollocationProblem, z: Array, multiplier: float) -> Array:

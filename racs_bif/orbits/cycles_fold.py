@@ -9,6 +9,7 @@ import numpy as np
 
 from racs_bif.continuation.problem import Detector
 from racs_bif.orbits.branch_point import BranchPointOfCycles
+from racs_bif.orbits.normal_forms import cycle_normal_form
 from racs_bif.orbits.problem import OrbitProblem, describe
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ class FoldOfCycles(Detector):
         return math.nan if problem.degenerate(point.z) else float(point.tangent[-1])
 
     def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
-        """Return period and multipliers; None where no second multiplier is 1 or branches cross.
+        """Return period, multipliers, normal form; None where it is none or branches cross.
 
         A branch born at a symmetry-breaking branch point runs through it with the tangent of a
         fold, but its matrix is singular there, which that of a fold is not.
@@ -42,4 +43,4 @@ class FoldOfCycles(Detector):
             return None
         if abs(BranchPointOfCycles().value(problem, point)) < _SINGULAR:
             return None
-        return describe(problem, point)
+        return describe(problem, point) | cycle_normal_form(problem, point, self.label)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 Complex = NDArray[np.complex128]
 
+_STILL = 1e-6
 _FINE = 8
 _POLISHING = 4
 
@@ -68,6 +69,27 @@ def amplitudes(series: Array) -> Array:
     return np.asarray(np.sqrt(np.sum(series[1:] ** 2, axis=0)))
 
 
+def odd(harmonics: int) -> NDArray[np.bool_]:
+    """Return which rows (2H + 1,) of a series are odd harmonics."""
+    k = np.arange(1, harmonics + 1)
+    return np.concatenate(([False], k % 2 == 1, k % 2 == 1))
+
+
+def subharmonics(series: Array) -> Array:
+    """Return the odd harmonics of a series: those that tell one half of a period from the other."""
+    return np.asarray(series[odd(harmonics_of(series))])
+
+
+def doubled(series: Array) -> Array:
+    """Return the series (4H + 1, m) of a function over two of its periods."""
+    count = harmonics_of(series)
+    longer = np.zeros((4 * count + 1, *series.shape[1:]))
+    longer[0] = series[0]
+    longer[2 : 2 * count + 1 : 2] = series[1 : count + 1]
+    longer[2 * count + 2 :: 2] = series[count + 1 :]
+    return longer
+
+
 def tails(series: Array) -> Array:
     """Return the largest of the highest harmonics (m,), relative to all of them.
 
@@ -76,7 +98,9 @@ def tails(series: Array) -> Array:
     count = harmonics_of(series)
     last = max(4, count // 10)
     squares = series[1 : count + 1] ** 2 + series[count + 1 :] ** 2
-    total = np.maximum(squares.sum(axis=0), np.finfo(float).tiny)
+    # what stands still but for rounding has a tail of rounding
+    total = squares.sum(axis=0)
+    total = np.maximum(total, _STILL**2 * total.max(initial=0.0) + np.finfo(float).tiny)
     return np.asarray(np.sqrt(squares[-last:].max(axis=0) / total))
 
 

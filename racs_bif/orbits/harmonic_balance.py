@@ -9,6 +9,7 @@ import numpy as np
 
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.errors import ConvergenceError, UsageError
+from racs_bif.orbits.balance_harmonics import wanted_harmonics
 from racs_bif.orbits.balance_settings import BalanceSettings
 from racs_bif.orbits.fourier import (
     amplitudes,
@@ -24,8 +25,6 @@ from racs_bif.orbits.problem import OrbitProblem
 from racs_bif.orbits.realised_orbit import multipliers_along, realised_states
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from racs_bif.continuation.points import Point
     from racs_bif.fractional.exact import ExactModel
     from racs_bif.fractional.realised import RealisedField
@@ -41,9 +40,6 @@ TAIL: Final = 3
 """Unknowns after the coefficients: period, number of the reference, parameter."""
 _SAME: Final = 1e-9
 _POLISHING: Final = 6
-_GROWTH: Final = 1.3
-_SPARE: Final = 1e-2
-"""Harmonics are given back where even two thirds of them leave a tail this far below the bound."""
 
 
 class HarmonicBalanceProblem(OrbitProblem):
@@ -69,6 +65,8 @@ class HarmonicBalanceProblem(OrbitProblem):
         The first phase condition.
     settings : BalanceSettings, optional
         Harmonics, multipliers, ends.
+    turns : int
+        2 where the branch begins at a period doubling; see `OrbitProblem`.
     """
 
     field: RealisedField
@@ -80,14 +78,18 @@ class HarmonicBalanceProblem(OrbitProblem):
         balance: Balance,
         reference: PhaseReference,
         settings: BalanceSettings | None = None,
+        *,
+        turns: int = 1,
     ) -> None:
         self.name = "periodic orbits by harmonic balance"
+        self.turns = turns
         self.parameter = path.names[0]
         self.field = model.field
         self.model = model
         self.path = path
         self.balance = balance
         self.settings = settings or BalanceSettings()
+        self.trivial = self.settings.trivial
         self._references: list[PhaseReference] = [reference]
         self._width = len(balance.kept)
         self._solution: tuple[bytes, Balanced] | None = None
@@ -103,6 +105,10 @@ class HarmonicBalanceProblem(OrbitProblem):
     def series(self, z: Array) -> Array:
         """Return the unknown series (2H + 1, m)."""
         return z[:-TAIL].reshape(-1, self._width)
+
+    def unknown_states(self, z: Array) -> Array:
+        """Return the unknown series (2H + 1, m)."""
+        return self.series(z)
 
     def period(self, z: Array) -> float:
         """Return the period, in units of time."""
@@ -187,6 +193,10 @@ class HarmonicBalanceProblem(OrbitProblem):
     def degenerate(self, z: Array) -> bool:
         """Return whether there is no amplitude, or it has changed sign at an equilibrium."""
         series, reference = self.series(z), self.reference(z)
+        if self.at_crossing(z):
+            return True
+        if self.turns == 2:
+            return reference.halved(series, self.settings.smallest)
         relative = amplitudes(series) / reference.scales
         if float(relative.max()) < self.settings.smallest:
             return True
@@ -199,19 +209,6 @@ class HarmonicBalanceProblem(OrbitProblem):
             found = multipliers_along(self._near(z), self.field, self.settings)
             self._floquet = (key, found)
         return self._floquet[1]
-
-    def stable(self, spectrum: NDArray[np.complex128]) -> bool | None:
-        """Return whether an orbit is stable; None where the realisation does not tell.
-
-        As in `Floquet.health`, the error of the trivial multiplier counts by its distance from the
-        nearest other.
-        """
-        if not len(spectrum):
-            return None
-        apart = float(np.abs(spectrum[1:] - spectrum[0]).min(initial=1.0))
-        if abs(spectrum[0] - 1.0) * min(1.0, apart) > self.settings.trivial:
-            return None
-        return super().stable(spectrum)
 
     def scales(self, z: Array) -> Array:
         """Return the scales of the unknowns, the same for all harmonics, the period, and 1."""
@@ -226,7 +223,7 @@ class HarmonicBalanceProblem(OrbitProblem):
         if self.period(z) > self.settings.longest * self._first_period:
             return Stopped.PERIOD
         if self.degenerate(z):
-            return None if self.reference(z).degenerate else Stopped.VANISHED
+            return None if self.reference(z).degenerate else self.vanished
         full = self.harmonics(z) >= self.settings.most_harmonics
         if full and self.tail(z) > self.settings.poorest:
             return Stopped.ACCURACY
@@ -236,7 +233,7 @@ class HarmonicBalanceProblem(OrbitProblem):
         """Take this orbit as the reference of the next, with as many harmonics as its tail asks."""
         if self.degenerate(z):
             return None
-        wanted = self._wanted(z)
+        wanted = wanted_harmonics(self.series(z), self.settings)
         if wanted != self.harmonics(z):
             # if that fails the present ones serve, until they no longer do and the branch ends
             with suppress(ConvergenceError, np.linalg.LinAlgError):
@@ -244,18 +241,6 @@ class HarmonicBalanceProblem(OrbitProblem):
         return self._follow(z), tangent
 
     # ------------------------------------------------------------------ harmonics
-
-    def _wanted(self, z: Array) -> int:
-        """Return how many harmonics the orbit should have."""
-        count, settings, series = self.harmonics(z), self.settings, self.series(z)
-        if self.tail(z) > settings.tail:
-            return min(int(np.ceil(_GROWTH * count)), settings.most_harmonics)
-        fewer = 2 * count // 3
-        if fewer >= settings.harmonics:
-            tail = float(tails(resized(series, fewer)).max())
-            if tail < _SPARE * settings.tail:
-                return fewer
-        return count
 
     def _follow(self, z: Array) -> Array:
         """Return `z` with this orbit itself as the reference of its phase."""
@@ -363,11 +348,14 @@ class HarmonicBalanceProblem(OrbitProblem):
         }
 
     def measures(self, z: Array) -> dict[str, float]:
-        """Return period, extremes of the model's states, tail, harmonics, and trivial error."""
-        own = self.model.ny
-        highest, lowest = extrema(self._exactly(z).spectrum[:, :own])
+        """Return period, extremes of the model's states, tail, harmonics, and trivial error.
+
+        Where a model is made of elements only, their outputs are what states are elsewhere.
+        """
+        compiled = self.balance.compiled
+        highest, lowest = extrema(self._exactly(z).spectrum[:, : self.model.ny or None])
         measures = {"period": self.period(z)}
-        for j, state in enumerate(self.balance.compiled.states):
+        for j, state in enumerate(compiled.states or compiled.elements):
             measures[f"max {state}"] = float(highest[j])
             measures[f"min {state}"] = float(lowest[j])
         measures["tail"] = self.tail(z)

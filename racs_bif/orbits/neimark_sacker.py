@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from racs_bif.continuation.problem import Detector
+from racs_bif.orbits.normal_forms import cycle_normal_form
 from racs_bif.orbits.problem import OrbitProblem, describe
 
 if TYPE_CHECKING:
@@ -40,12 +41,14 @@ class NeimarkSacker(Detector):
         return float(sign * np.abs(products - 1.0).min())
 
     def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
-        """Return the angle, period and multipliers; None at a neutral saddle of cycles."""
+        """Return angle, period, multipliers, normal form; None at a neutral saddle of cycles."""
         products, angles = _real_products(point.spectrum[1:])
         k = int(np.argmin(np.abs(products - 1.0)))
         if abs(products[k] - 1.0) > _NEAR or angles[k] < _REAL or angles[k] > math.pi - _REAL:
             return None
-        return {**describe(problem, point), "angle": float(angles[k])}
+        angle = float(angles[k])
+        form = cycle_normal_form(problem, point, self.label, angle)
+        return {**describe(problem, point), "angle": angle, **form}
 
 
 def _real_products(multipliers: NDArray[np.complex128]) -> tuple[Array, Array]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from racs_bif.continuation.problem import Detector
+from racs_bif.orbits.normal_forms import cycle_normal_form
 from racs_bif.orbits.problem import OrbitProblem, describe
 
 if TYPE_CHECKING:
@@ -37,9 +38,9 @@ class PeriodDoubling(Detector):
         return float(sign * np.abs(others + 1.0).min())
 
     def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
-        """Return period and multipliers; None where the sign changed without a multiplier at -1."""
+        """Return period, multipliers, normal form; None where no multiplier is at -1."""
         others = point.spectrum[1:]
         nearest = others[np.argmin(np.abs(others + 1.0))]
         if abs(nearest + 1.0) > _NEAR or nearest.imag != 0.0:
             return None
-        return describe(problem, point)
+        return describe(problem, point) | cycle_normal_form(problem, point, self.label)

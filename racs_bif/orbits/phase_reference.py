@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from racs_bif.orbits.fourier import subharmonics
+
 if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array
 
@@ -50,3 +52,15 @@ class PhaseReference:
         here, there = series[1:] / self.scales, self.series[1:] / self.scales
         lengths = float(np.linalg.norm(here) * np.linalg.norm(there))
         return float(np.sum(here * there)) / lengths if lengths else 0.0
+
+    def halved(self, series: Array, smallest: float) -> bool:
+        """Return whether the halves of a doubled orbit are the same, or have changed places.
+
+        No odd harmonics are left of it then, or they have changed sign.
+        """
+        here = subharmonics(series) / self.scales
+        if float(np.linalg.norm(here, axis=0).max()) < smallest:
+            return True
+        if self.degenerate:
+            return False
+        return float(np.sum(here * subharmonics(self.series) / self.scales)) < 0.0

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from racs_bif.continuation.problem import Problem
+from racs_bif.continuation.stopped import Stopped
 from racs_bif.orbits.orbit import Orbit
 
 if TYPE_CHECKING:
@@ -16,8 +17,12 @@ if TYPE_CHECKING:
     from racs_bif.continuation.points import Point
     from racs_bif.orbits.floquet import Floquet
     from racs_bif.symbolic.field import Array, VectorField
+    from racs_bif.symbolic.paths import ParameterPath
 
 _SEED: Final = 20240
+_SAMPLES: Final = 800
+_BESIDE: Final = 1e-6
+"""Relative distance within which an orbit is the branch point that its branch begins at."""
 
 
 class OrbitProblem(Problem):
@@ -30,9 +35,37 @@ class OrbitProblem(Problem):
     ----------
     field : VectorField
         The right-hand side.
+    path : ParameterPath
+        Where the active parameter leads.
+    turns : int
+        2 where the branch begins at a period doubling: an orbit is a proper one of this branch if
+        its halves differ. Otherwise 1.
+    trivial : float
+        Largest error of the trivial multiplier, times its distance from the nearest other, at which
+        the multipliers still tell whether an orbit is stable.
+    crossing : array or None
+        The branch point that the branch begins at, where it does: no test function is defined
+        there, as two branches pass.
     """
 
     field: VectorField
+    path: ParameterPath
+    turns: int = 1
+    trivial: float = 1e-3
+    crossing: Array | None = None
+
+    @property
+    def vanished(self) -> Stopped:
+        """Why a branch ends whose orbits are no proper ones any more."""
+        return Stopped.HALVED if self.turns == 2 else Stopped.VANISHED
+
+    @abstractmethod
+    def reference(self, z: Array) -> Any:  # noqa: ANN401 - as the discretisation has it
+        """Return the orbit that the phase of `z` is compared with; it has the states' scales."""
+
+    @abstractmethod
+    def unknown_states(self, z: Array) -> Array:
+        """Return the unknowns that are states, (k, m): the columns belong to the same state."""
 
     @abstractmethod
     def period(self, z: Array) -> float:
@@ -57,6 +90,18 @@ class OrbitProblem(Problem):
     @abstractmethod
     def sample(self, z: Array, fractions: Array) -> Array:
         """Return the states (n, m) at fractions (m,) of the period."""
+
+    def at_crossing(self, z: Array) -> bool:
+        """Return whether `z` is the branch point that the branch begins at."""
+        if self.crossing is None or len(z) != len(self.crossing):
+            return False
+        distance = (z - self.crossing) / self.magnitudes(z)
+        distance[-2] = 0.0
+        return float(np.abs(distance).max()) < _BESIDE
+
+    def place(self, measure: str) -> int | None:
+        """Return where in z the period is; no other measure is an unknown."""
+        return -3 if measure == "period" else None
 
     def magnitudes(self, z: Array) -> Array:
         """Return the scales of the unknowns with that of the parameter."""
@@ -106,8 +151,21 @@ class OrbitProblem(Problem):
         for j, state in enumerate(self.field.states):
             measures[f"max {state}"] = float(highest[j])
             measures[f"min {state}"] = float(lowest[j])
+        measures |= self._swings_of_outputs(z)
         measures["trivial error"] = self.floquet(z).trivial_error
         return measures
+
+    def _swings_of_outputs(self, z: Array) -> dict[str, float]:
+        """Return the extremes of elements' outputs where a model has no states of its own."""
+        found: dict[str, float] = {}
+        if not self.field.stateless:
+            return found
+        states = self.sample(z, np.arange(_SAMPLES) / _SAMPLES)
+        outputs = self.field.own_outputs(states, self.path.vector(z[-1]))
+        for name, values in outputs.items():
+            found[f"max {name}"] = _peak(values)
+            found[f"min {name}"] = -_peak(-values)
+        return found
 
     def remarks(self, z: Array) -> dict[str, float | str]:
         """Return what else there is to know about an orbit, by default nothing."""
@@ -119,6 +177,20 @@ class OrbitProblem(Problem):
         if self.degenerate(z):
             return np.empty(0, dtype=complex)
         return self.floquet(z).multipliers
+
+    def stable(self, spectrum: NDArray[np.complex128]) -> bool | None:
+        """Return whether an orbit is stable; None where its multipliers are too poor to tell.
+
+        As in `Floquet.health`, the error of the trivial multiplier counts by its distance from the
+        nearest other.
+        """
+        if not len(spectrum):
+            return None
+        apart = np.abs(spectrum[1:] - spectrum[0])
+        nearest = float(apart[np.isfinite(apart)].min(initial=1.0))
+        if not abs(spectrum[0] - 1.0) * min(1.0, nearest) <= self.trivial:
+            return None
+        return self.unstable(spectrum) == 0
 
     def unstable(self, spectrum: NDArray[np.complex128]) -> int:
         """Return how many multipliers other than the trivial one are outside the unit circle."""
@@ -138,3 +210,11 @@ def describe(problem: OrbitProblem, point: Point) -> dict[str, Any]:
         "multipliers": point.spectrum,
         "trivial_error": float(abs(point.spectrum[0] - 1.0)),
     }
+
+
+def _peak(values: Array) -> float:
+    """Return the highest value of a periodic function from its samples (m,), by a parabola."""
+    k = int(np.argmax(values))
+    before, at, after = values[k - 1], values[k], values[(k + 1) % len(values)]
+    bend = 2.0 * at - before - after
+    return float(at + (after - before) ** 2 / (8.0 * bend)) if bend > 0.0 else float(at)

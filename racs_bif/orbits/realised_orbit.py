@@ -40,7 +40,8 @@ def multipliers_along(exact: Balanced, field: RealisedField, settings: BalanceSe
     """
     spectrum = realised_states(exact, field)
     k = np.arange(len(spectrum))[:, None]
-    mesh = _mesh(spectrum[:, : exact.balance.model.ny], settings)
+    # a model of elements only has no states of its own: their outputs tell how the orbit bends
+    mesh = _mesh(exact.spectrum[:, : exact.balance.model.ny or None], settings)
     stages = evaluated(spectrum, mesh.times(ABSCISSAE).ravel())
     matrices = transitions(field.f_x(stages, exact.p), mesh, exact.period)
     velocities = evaluated(1j * k * spectrum, mesh.starts).T

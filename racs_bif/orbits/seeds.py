@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from racs_bif.errors import UsageError
+from racs_bif.orbits.mesh import Mesh, equidistributed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,6 +22,14 @@ _REACH: Final = 0.05
 """Share of the parameter that the first scale of the amplitude moves it by."""
 _BEND: Final = 0.5
 """Largest second order of the centre manifold over its first at that scale."""
+_FINE: Final = 800
+"""Samples by which the speed of an orbit is judged."""
+_SMOOTH: Final = 8.0
+"""Largest speed over the median at which equal steps serve."""
+_BURSTS: Final = 4.0
+"""How many times more steps an orbit that moves in bursts is given."""
+_ZERO: Final = 1e-9
+"""A parameter below it is zero but for rounding, and says nothing about its own magnitude."""
 _STILL: Final = 1e-4
 """States that move less than this share of the others do not set a scale of their own."""
 
@@ -49,6 +58,29 @@ class Seed:
     points: Callable[[Array], Array]
     velocities: Callable[[Array], Array]
     direction: Callable[[Array], Array] | None = None
+
+    def mesh(self, steps: int, order: int, segments: int = 1) -> Mesh:
+        """Return a mesh for the first orbit, finer where it moves faster.
+
+        Parameters
+        ----------
+        steps : int
+            Fewest steps; an orbit that moves in bursts is given more, up to `_BURSTS` times.
+        order : int
+            Power of the width with which the error of a step falls.
+        segments : int
+            Segments of the mesh.
+        """
+        uniform = Mesh.uniform(_FINE, 1)
+        if self.direction is not None:
+            return Mesh.uniform(steps, segments)
+        speeds = np.abs(self.velocities(uniform.nodes) / self.scales).max(axis=1)
+        fastest = np.maximum(speeds[1:], speeds[:-1])
+        bursts = float(fastest.max() / np.median(fastest)) if np.median(fastest) > 0.0 else _BURSTS
+        if bursts < _SMOOTH:
+            return Mesh.uniform(steps, segments)
+        more = min(max(1.0, bursts / _SMOOTH), _BURSTS)
+        return equidistributed(uniform, fastest**order, order, int(more * steps), segments)
 
 
 def hopf_seed(
@@ -99,6 +131,11 @@ def hopf_seed(
         )
     amplitude = _amplitude(state, float(value[0]), q, form)
     moving = np.maximum(np.abs(q), _STILL * np.abs(q).max())
+    scales = 4.0 * amplitude * moving  # the range of 2 a Re(q e^(i theta))
+    if form is not None:
+        # what the mode leaves at rest, as symmetry may have it, moves by its square
+        bent = np.abs(form.h11) + np.abs(form.h20)
+        scales = np.maximum(scales, 2.0 * amplitude**2 * bent)
 
     def mode(times: Array, times_slope: int) -> Array:
         turned = q * np.exp(2j * np.pi * times)[..., None]
@@ -107,7 +144,7 @@ def hopf_seed(
     return Seed(
         period=2.0 * np.pi / omega,
         value=float(value[0]),
-        scales=4.0 * amplitude * moving,  # the range of 2 a Re(q e^(i theta))
+        scales=scales,
         points=lambda times: np.broadcast_to(state, (*times.shape, len(state))),
         velocities=lambda times: mode(times, 1),
         direction=lambda times: mode(times, 0),
@@ -174,7 +211,7 @@ def _amplitude(
         return (0.1 * equilibrium if equilibrium > 0.0 else 1.0) / size
     bend = float(np.linalg.norm(form.h20) + np.linalg.norm(form.h11))
     curvature = abs(form.parameter_curvature)
-    reach = _REACH * (abs(value) if value else 1.0)
+    reach = _REACH * (abs(value) if abs(value) > _ZERO else 1.0)
     limits = [1.0 / size] if bend == curvature == 0.0 else []
     if bend > 0.0:
         limits.append(_BEND * size / bend)

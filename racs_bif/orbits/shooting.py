@@ -12,6 +12,7 @@ import numpy as np
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.orbits.assembly import TAIL, dense_jacobian, ring_solver
+from racs_bif.orbits.dense import Profile
 from racs_bif.orbits.floquet import Floquet, floquet
 from racs_bif.orbits.flow import Derivative, Flow, Integrator
 from racs_bif.orbits.generations import Generations
@@ -30,8 +31,16 @@ if TYPE_CHECKING:
 
 _SAME: Final = 1e-9
 """Relative distance below which the derivative of the flow is taken over."""
+_HALF: Final = 200
+"""Samples by which the halves of a doubled orbit are compared."""
 _DENSE: Final = 128
 """Unknowns up to which a dense LU factorisation is faster than condensation (measured)."""
+
+
+def _departures(profile: Profile) -> Array:
+    """Return the first half of an orbit less the second (k, n)."""
+    times = np.linspace(0.0, 0.5, _HALF, endpoint=False)
+    return np.asarray(profile(times) - profile(times + 0.5))
 
 
 @dataclass(eq=False)
@@ -70,6 +79,8 @@ class ShootingProblem(OrbitProblem):
         The first mesh and phase condition; its stages are the guess of the first orbit.
     settings : OrbitSettings, optional
         How orbits are resolved, and when the branch ends.
+    turns : int
+        2 where the branch begins at a period doubling; see `OrbitProblem`.
     """
 
     def __init__(
@@ -78,12 +89,16 @@ class ShootingProblem(OrbitProblem):
         path: ParameterPath,
         reference: Reference,
         settings: OrbitSettings | None = None,
+        *,
+        turns: int = 1,
     ) -> None:
         self.name = "periodic orbits by shooting"
+        self.turns = turns
         self.parameter = path.names[0]
         self.field = field
         self.path = path
         self.settings = settings or OrbitSettings()
+        self.trivial = self.settings.trivial
         self.integrator = Integrator(field, path)
         self.generations = Generations(self.integrator, reference)
         self._size = len(field.states)
@@ -101,6 +116,10 @@ class ShootingProblem(OrbitProblem):
     def starts(self, z: Array) -> Array:
         """Return the starts of the segments (M, n)."""
         return z[:-TAIL].reshape(-1, self._size)
+
+    def unknown_states(self, z: Array) -> Array:
+        """Return the starts of the segments (M, n)."""
+        return self.starts(z)
 
     def period(self, z: Array) -> float:
         """Return the period, in units of time."""
@@ -202,11 +221,26 @@ class ShootingProblem(OrbitProblem):
 
     def degenerate(self, z: Array) -> bool:
         """Return whether there is no amplitude, or it has changed sign at an equilibrium."""
+        if self.at_crossing(z):
+            return True
         flow, reference = self._at(z).flow, self.reference(z)
+        if self.turns == 2:
+            return self._halves_agree(flow, reference)
         relative = flow.profile.ranges() / reference.scales
         if float(relative.max()) < self.settings.smallest:
             return True
         return reference.correlation(flow.stages) < 0.0
+
+    def _halves_agree(self, flow: Flow, reference: Reference) -> bool:
+        """Return whether the halves of a doubled orbit are the same, or have changed places."""
+        here = _departures(flow.profile) / reference.scales
+        if float(np.abs(here).max()) < self.settings.smallest:
+            return True
+        if reference.degenerate:
+            return False
+        origins = np.roll(reference.stages[:, -1], 1, axis=0)
+        before = _departures(Profile(reference.mesh, origins, reference.stages))
+        return float(np.sum(here * before / reference.scales)) < 0.0
 
     def floquet(self, z: Array) -> Floquet:
         """Return the multipliers, from the transition matrices without their product."""
@@ -234,7 +268,7 @@ class ShootingProblem(OrbitProblem):
             return Stopped.PERIOD
         reference = self.reference(z)
         if self.degenerate(z):
-            return None if reference.degenerate else Stopped.VANISHED
+            return None if reference.degenerate else self.vanished
         full = reference.mesh.steps >= self.settings.most_steps
         if full and self.floquet(z).health > self.settings.trivial:
             return Stopped.ACCURACY

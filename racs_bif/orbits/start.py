@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.orbits.mesh import Mesh
+from racs_bif.orbits.dense import ORDER
 from racs_bif.orbits.radau import ABSCISSAE
 from racs_bif.orbits.reference import Reference
 from racs_bif.orbits.seeds import Seed, hopf_seed, samples_seed
@@ -86,7 +86,7 @@ def shooting_from(
         How orbits are resolved.
     """
     settings = settings or OrbitSettings()
-    mesh = Mesh.uniform(settings.steps, settings.segments)
+    mesh = seed.mesh(settings.steps, ORDER, settings.segments)
     times = mesh.times(ABSCISSAE)
     reference = Reference(
         mesh,

@@ -66,8 +66,13 @@ class _Search:
         self.traces.append(found)
         self.connected.append(not self.probing)
         for special in found.special:
-            if special.label == "BP":
-                self.follow(special.z, np.asarray(special.data["other_tangent"]))
+            if special.label == "BP" and "other_tangent" in special.data:
+                try:
+                    self.follow(special.z, np.asarray(special.data["other_tangent"]))
+                except ConvergenceError as error:
+                    # At the edge of the span the other branch may lie outside.
+                    if special.parameter not in self.span:
+                        found.message = f"{found.message}\n{error}".strip()
 
     def states_at(self, value: float) -> list[Array]:
         """Return the equilibria X = (y, w) that known branches pass at a value."""
@@ -181,6 +186,12 @@ def all_equilibria(
         inset = 1e-3 * (high - low)
         for value in np.linspace(low + inset, high - inset, probes):
             search.probe(float(value))
+    if not search.traces:
+        msg = (
+            f"no branch of equilibria found between {parameter} = {low:g} and {high:g}; widen the "
+            "span or give the model another guess"
+        )
+        raise ConvergenceError(msg)
     problem = equilibrium_problem(system, parameter)
     branches = [
         replace(as_branch(system, problem, found, (low, high)), connected=connected)

@@ -44,13 +44,20 @@ def measures(points: Sequence[Point]) -> dict[str, NDArray[np.float64]]:
 
 
 def stopped(trace: Trace) -> tuple[str, bool]:
-    """Return why a branch ended, both ends if they differ, and whether that was early."""
+    """Return why a branch ended, both ends if they differ, and whether that was early.
+
+    An end of the span needs no words beside another reason.
+    """
     ends = [trace.stopped]
+    sentences = [trace.stopped.value]
     if trace.stopped_backward is not None and trace.stopped_backward is not trace.stopped:
         ends.insert(0, trace.stopped_backward)
-    sentences = [end.value for end in ends]
-    if len(ends) > 1:
-        sentences = [f"At its beginning: {sentences[0]}", f"At its end: {sentences[1]}"]
+        places = ("At its beginning", "At its end")
+        sentences = [
+            f"{place}: {end.value}"
+            for place, end in zip(places, ends, strict=True)
+            if end is not Stopped.SPAN
+        ]
     notes = trace.message.splitlines()
     sentences += notes[:_NOTES]
     if len(notes) > _NOTES:

@@ -3,41 +3,33 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from racs_bif.charts.backends import choose_backend
-from racs_bif.charts.maps import QUANTITIES, MapJob
+from racs_bif.charts.backends import InProcess, choose_backend
 from racs_bif.charts.pieces import own_pieces
-from racs_bif.charts.plane import Plane
 from racs_bif.charts.regions import regions
-from racs_bif.charts.running import run_map
-from racs_bif.charts.search import Search, search
+from racs_bif.charts.search import search
 from racs_bif.charts.settings import ChartSettings
-from racs_bif.errors import UsageError, nearest
+from racs_bif.errors import UsageError
 from racs_bif.numerics.threads import single_threaded
-from racs_bif.results.chart import (
-    BoundaryPoint,
-    Chart,
-    ChartBoundary,
-    ChartMap,
-    ChartRegion,
-)
+from racs_bif.results.chart import Chart
 from racs_bif.results.chart_slices import ChartSlices
 from racs_bif.results.provenance import describe
 from racs_bif.shelf.load import system_of
-from racs_bif.verbs.equilibria import check_span
+from racs_bif.verbs.chart_map import MapRequest, SweepSettings, compute_map
+from racs_bif.verbs.chart_parts import boundary_of, region_of, troubles_of
+from racs_bif.verbs.chart_plane import check_marks, curves_over, plane_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from racs_bif.charts.backends import Backend
-    from racs_bif.charts.boundary import Boundary
-    from racs_bif.charts.regions import Region
     from racs_bif.fractional.system import System
-    from racs_bif.symbolic.field import Array
+    from racs_bif.results.branch import Branch
+    from racs_bif.results.chart_curve import ChartCurve
     from racs_bif.symbolic.model import Model
 
     Span = tuple[float, float]
@@ -54,8 +46,11 @@ def stability_chart(  # noqa: PLR0913 - each is one choice of the user's
     at: Mapping[str, float] | None = None,
     marks: Mapping[str, Sequence[float]] | None = None,
     lyapunov: bool = False,
+    operator: str = "exact",
+    curves: Sequence[Branch | ChartCurve] = (),
     quantity: str | None = None,
     shape: tuple[int, int] = (200, 200),
+    sweep: SweepSettings | None = None,
     workers: int = 0,
     scheduler: str | None = None,
     tiles: Path | None = None,
@@ -63,7 +58,7 @@ def stability_chart(  # noqa: PLR0913 - each is one choice of the user's
     settings: ChartSettings | None = None,
     progress: Progress | None = None,
 ) -> Chart:
-    """Draw up the stability chart of a plane, on the exact characteristic equation.
+    """Draw up the stability chart of a plane, on the characteristic equation.
 
     Boundaries are continued, not painted: a quadtree of counts only finds where to begin, and that
     nothing is missing. Regions say how many roots are unstable.
@@ -83,10 +78,20 @@ def stability_chart(  # noqa: PLR0913 - each is one choice of the user's
     lyapunov : bool
         Compute the first Lyapunov coefficient along Hopf boundaries, and the GH points where it
         changes sign.
-    quantity : {"count", "damping"}, optional
-        A map over the plane: the number of unstable roots, or the rightmost root besides.
+    operator : {"exact", "realised"}
+        Whose characteristic equation: that of the fractional operators themselves, or of the
+        filters that realise them. Simulations are always of the realised one.
+    curves : sequence of Branch or ChartCurve, optional
+        Curves in this plane to draw and save with it, such as the folds of cycles that
+        `racs_bif.continue_curve` follows.
+    quantity : {"count", "damping", "amplitude", "lyapunov", "periods"}, optional
+        A map over the plane: the number of unstable roots; the rightmost root besides; or, by a
+        simulation in every cell, the amplitude of what it settles on, its largest Lyapunov
+        exponent, or in how many crossings of a Poincare section it repeats.
     shape : (int, int)
         Cells of the map.
+    sweep : SweepSettings, optional
+        What is simulated.
     workers : int
         Processes of this machine that compute the map; 0 computes it here. A script that asks for
         them needs ``if __name__ == "__main__":``.
@@ -125,16 +130,19 @@ def stability_chart(  # noqa: PLR0913 - each is one choice of the user's
     (True, 2, 0)
     """
     began = time.perf_counter()
-    system, plane = _plane(model, (first, second), spans, at or {})
+    plane = plane_of(model, (first, second), spans, at or {}, operator)
     backend = choose_backend(workers, scheduler)
-    if quantity is not None and quantity not in QUANTITIES:
-        msg = f"unknown map '{quantity}'; {nearest(quantity, QUANTITIES)}"
-        raise UsageError(msg)
-    _check_marks(plane, marks or {})
+    wanted = None
+    if quantity is not None:
+        wanted = MapRequest(quantity, shape, sweep or SweepSettings())
+        wanted.check(plane.system)
+    check_marks(plane, marks or {})
+    over = curves_over(plane, curves)
+    settings = settings or ChartSettings()
     tell = progress or (lambda _what, _done, _of: None)
     found = search(
         plane,
-        settings or ChartSettings(),
+        settings,
         lyapunov=lyapunov,
         marks=marks,
         progress=lambda what: tell(what, 0, 0),
@@ -142,25 +150,28 @@ def stability_chart(  # noqa: PLR0913 - each is one choice of the user's
     pieces = [piece for b in found.boundaries for piece in own_pieces(found.lattice, b)]
     parts = regions(found.lattice, pieces)
     chart_map = None
-    if quantity is not None:
-        job = MapJob.over(found.lattice, shape, quantity)
-        chart_map = _map(job, backend, tiles, tell, resume=resume)
+    if wanted is not None:
+        job = wanted.job(found.lattice, pieces)
+        chart_map = compute_map(job, backend, tiles, tell, resume=resume)
     nodes = list(found.lattice.nodes.values())
     counted = [node for node in nodes if node.count >= 0]
     return Chart(
         parameters=(first, second),
         spans=plane.spans,
-        boundaries=tuple(_boundary(plane, piece) for piece in pieces),
-        regions=tuple(_region(plane, part) for part in parts),
+        boundaries=tuple(boundary_of(plane, piece) for piece in pieces),
+        regions=tuple(region_of(plane, part) for part in parts),
         node_values=plane.values(np.array([node.place for node in nodes]).T).T,
         node_counts=np.array([node.count for node in nodes], dtype=np.int64),
-        system=describe(system),
+        system=describe(plane.system),
         map=chart_map,
+        curves=over,
+        operator=operator,
+        depth=settings.depth,
         unexplained=len(found.unexplained),
         torn=found.torn,
         evaluations=found.evaluations,
         per_count=found.lattice.counter.evaluations / max(len(counted), 1),
-        troubles=_troubles(found, parts),
+        troubles=troubles_of(found, parts),
         seconds=time.perf_counter() - began,
     )
 
@@ -181,9 +192,15 @@ def chart_slices(
     Parameters
     ----------
     model, first, second, spans, at, tiles, **options
-        See `stability_chart`; every slice has its own folder of tiles.
+        See `stability_chart`; every slice has its own folder of tiles. Workers, or a scheduler,
+        compute slices side by side, and maps tile by tile where these are asked for.
     slices : (str, sequence of float)
         The third parameter and its values, SI.
+
+    Returns
+    -------
+    ChartSlices
+        One chart for each value, in their order.
 
     Raises
     ------
@@ -197,119 +214,54 @@ def chart_slices(
     if not values or len(set(values)) < len(values):
         msg = f"slices along '{name}' need values that differ, such as {name}=10,15,20"
         raise UsageError(msg)
-    charts = [
-        stability_chart(
-            model,
-            first,
-            second,
-            spans,
-            at={**(at or {}), name: value},
-            tiles=None if tiles is None else tiles / f"{name}={value:.12g}",
-            **options,
-        )
-        for value in values
-    ]
-    return ChartSlices(parameter=name, charts=tuple(charts))
-
-
-def _plane(
-    model: Model | System,
-    names: tuple[str, str],
-    spans: tuple[Span, Span],
-    at: Mapping[str, float],
-) -> tuple[System, Plane]:
-    system = system_of(model)
-    if names[0] == names[1]:
-        msg = f"a chart needs two different parameters, not '{names[0]}' twice"
+    if options.get("curves"):
+        msg = "curves hold at one value of every other parameter; leave them out of slices"
         raise UsageError(msg)
-    low, high = (check_span(system, n, s) for n, s in zip(names, spans, strict=True))
-    for name in at:
-        if name in names:
-            msg = f"'{name}' is varied, it cannot be held as well; leave it out"
-            raise UsageError(msg)
-    system = system.with_parameters(at) if at else system
-    system.path(*names)  # refuses two that move the same
-    return system, Plane(system, names, (low, high))
-
-
-def _check_marks(plane: Plane, marks: Mapping[str, Sequence[float]]) -> None:
-    spans = dict(zip(plane.names, plane.spans, strict=True))
-    for name, values in marks.items():
-        if name not in spans:
-            msg = f"points can be wanted at values of {' or '.join(plane.names)}, not of '{name}'"
-            raise UsageError(msg)
-        low, high = spans[name]
-        for value in values:
-            if not low <= value <= high:
-                msg = f"{name} = {value:g} is outside its span {low:g} to {high:g}; widen the span"
-                raise UsageError(msg)
-
-
-def _map(
-    job: MapJob, backend: Backend, tiles: Path | None, tell: Progress, *, resume: bool
-) -> ChartMap:
-    whole = run_map(
-        job,
-        backend,
-        folder=tiles,
-        resume=resume,
-        progress=lambda done, of: tell("map", done, of),
+    job = _Slices(
+        system=system_of(model),
+        names=(first, second),
+        spans=spans,
+        parameter=name,
+        values=tuple(values),
+        at=dict(at or {}),
+        tiles=tiles,
+        options=dict(options),
     )
-    nothing = np.full(job.shape, np.nan)
-    return ChartMap(
-        quantity=job.quantity,
-        unstable=whole["unstable"].astype(np.int8),
-        sigma=np.asarray(whole.get("sigma", nothing), dtype=float),
-        omega=np.asarray(whole.get("omega", nothing), dtype=float),
-        evaluations=int(whole["evaluations"].sum()),
-    )
+    if options.get("quantity") is not None:
+        # The backend computes the maps, one after another.
+        return ChartSlices(parameter=name, charts=tuple(map(job.compute, range(len(values)))))
+    backend = choose_backend(job.options.pop("workers", 0), job.options.pop("scheduler", None))
+    tell = None if isinstance(backend, InProcess) else job.options.pop("progress", None)
+    done: dict[int, Chart] = {}
+    for index, chart in backend.run(job, range(len(values))):
+        done[index] = chart
+        if tell is not None:
+            tell("slices", len(done), len(values))
+    return ChartSlices(parameter=name, charts=tuple(done[k] for k in range(len(values))))
 
 
-def _boundary(plane: Plane, boundary: Boundary) -> ChartBoundary:
-    return ChartBoundary(
-        kind=boundary.kind,
-        values=boundary.values,
-        omega=boundary.omega,
-        l1=boundary.l1,
-        line=_values(plane, boundary.line),
-        closed=boundary.closed,
-        complete=boundary.complete,
-        stopped=boundary.stopped,
-        points=tuple(
-            BoundaryPoint(
-                label=point.label,
-                parameters=dict(zip(plane.names, map(float, point.values), strict=True)),
-                data=point.data,
-            )
-            for point in boundary.special
-        ),
-    )
+@dataclass(frozen=True, kw_only=True)
+class _Slices:
+    """Charts at several values of a third parameter, as tasks for a backend."""
 
+    system: System
+    names: tuple[str, str]
+    spans: tuple[Span, Span]
+    parameter: str
+    values: tuple[float, ...]
+    at: dict[str, float]
+    tiles: Path | None
+    options: dict[str, Any]
 
-def _region(plane: Plane, region: Region) -> ChartRegion:
-    return ChartRegion(
-        unstable=region.count,
-        area=region.face.area,
-        place=plane.values(region.place),
-        loops=tuple(_values(plane, loop) for loop in region.face.loops),
-        nodes=region.nodes,
-        disagreeing=region.disagreeing,
-    )
-
-
-def _values(plane: Plane, places: Array) -> Array:
-    return np.ascontiguousarray(plane.values(places.T).T)
-
-
-def _troubles(found: Search, parts: tuple[Region, ...]) -> tuple[str, ...]:
-    """Return what a user must know before trusting the chart."""
-    troubles = list(dict.fromkeys(found.troubles))
-    if found.unexplained:
-        troubles.append(
-            f"counts differ in {len(found.unexplained)} places for no boundary that was found; "
-            "raise the depth of the search"
+    def compute(self, index: int) -> Chart:
+        """Draw up one chart."""
+        value = self.values[index]
+        folder = None if self.tiles is None else self.tiles / f"{self.parameter}={value:.12g}"
+        return stability_chart(
+            self.system,
+            *self.names,
+            self.spans,
+            at={**self.at, self.parameter: value},
+            tiles=folder,
+            **self.options,
         )
-    wrong = sum(part.disagreeing for part in parts)
-    if wrong:
-        troubles.append(f"{wrong} places have another count than the region they are in")
-    return tuple(troubles)

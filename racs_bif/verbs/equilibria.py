@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from racs_bif.fractional.system import System
     from racs_bif.symbolic.field import Array
 
+_SMALL = 1e-3
+"""Share of the span below which a value of the parameter is no measure of its own shift."""
+
 
 @single_threaded
 def continue_equilibria(
@@ -167,12 +170,18 @@ def check_span(system: System, parameter: str, span: tuple[float, float]) -> tup
 
 
 def outputs_of(system: System) -> Callable[[Array, Array], dict[str, float]]:
-    """Return the outputs of a system as a function of states (n,) and base parameters (np,)."""
+    """Return the outputs of a system as a function of states (n,) and base parameters (np,).
+
+    Where a model has no states of its own, the outputs of its elements are among them.
+    """
 
     def outputs(x: Array, p: Array) -> dict[str, float]:
         frame = system.field.frame(p)
         values = system.compiled.output_values(system.field.core_point(x, p), frame.P)
-        return {name: float(value) for name, value in values.items()}
+        named = {name: float(value) for name, value in values.items()}
+        if not system.states:
+            named |= zip(system.own, map(float, system.own_state(x, p)), strict=True)
+        return named
 
     return outputs
 
@@ -213,6 +222,7 @@ def as_branch(
         early=early,
         system=describe(system),
         method="pseudo-arclength",
+        origin=system,
         **assemble.columns(found.points),
     )
 
@@ -239,20 +249,20 @@ def _special(
     exact = None
     if raw.label == "H" and system.fractional:
         try:
-            exact = _exact_hopf(system, problem, raw)
+            exact = _exact_hopf(system, problem, raw, span[1] - span[0])
         except ConvergenceError as error:
             data["refused"] = str(error)
         law = system.field.frame(problem.path.vector(raw.z[-1]))
         s = np.array([1j * raw.data["omega"]])
         errors = [abs(f(s)[0] / z(s)[0] - 1.0) for f, z in zip(law.filters, law.laws, strict=True)]
         data["realisation_error"] = float(max(errors))
-    names = system.field.states
+    own = system.own_state(raw.z[:-1], problem.path.vector(raw.z[-1]))
     return SpecialPoint(
         label=raw.label,
         name=raw.name,
         branch="EQ1",
         parameters={problem.parameter: raw.z[-1]},
-        state=dict(zip(names[: len(system.states)], raw.z[:-1], strict=False)),
+        state=dict(zip(system.own, own, strict=True)),
         data=data,
         exact=exact,
         index=raw.index,
@@ -260,11 +270,14 @@ def _special(
     )
 
 
-def _exact_hopf(system: System, problem: EquilibriumProblem, raw: RawPoint) -> ExactPoint:
+def _exact_hopf(
+    system: System, problem: EquilibriumProblem, raw: RawPoint, width: float
+) -> ExactPoint:
     value, omega = float(raw.z[-1]), float(raw.data["omega"])
     X = system.exact_point(raw.z[:-1], problem.path.vector(value))
     exact = solve_hopf(system.exact, problem.path, X, value, omega)
-    size = abs(exact.value) or 1.0
+    # beside zero a relative shift says nothing: there the span is the measure
+    size = abs(exact.value) if abs(exact.value) > _SMALL * width else width
     form = exact_form(system.exact, problem.path, exact)
     return ExactPoint(
         l1=form.l1,

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from racs_bif.equilibria.curve_problem import CurveProblem
+from racs_bif.errors import UsageError
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import SpecialPoint as RawPoint
     from racs_bif.continuation.problem import Problem
     from racs_bif.fractional.system import System
+    from racs_bif.results.special import SpecialPoint
     from racs_bif.symbolic.field import Array
 
 
@@ -48,3 +50,19 @@ class Origin:
         if isinstance(self.problem, CurveProblem):
             return self.problem.realised(self.raw.z)[1]
         return self.raw.z[:-1]
+
+
+def origin_of(point: SpecialPoint) -> Origin:
+    """Return where a point came from.
+
+    Raises
+    ------
+    UsageError
+        If it was loaded from a file, where that is not kept.
+    """
+    if not isinstance(point.origin, Origin):
+        msg = (
+            f"{point.name} was loaded from a file; compute its branch again to start a curve there"
+        )
+        raise UsageError(msg)
+    return point.origin

@@ -52,23 +52,45 @@ def rebuild(branch: Branch, model: Model | System | str | None = None) -> System
     return system
 
 
+def rebuild_from(info: SystemInfo, model: Model | System | str | None = None) -> System:
+    """Return the system that a result without special points, such as a history, tells of.
+
+    Raises
+    ------
+    UsageError, ModelError
+        As `rebuild`.
+    """
+    system = _from_info(info, model, f"model '{info.model}'")
+    if info.equations and equations_digest(system) != info.equations:
+        msg = (
+            f"the equations of model '{system.name}' are not those that this result was computed "
+            "with; compute it again, or give the model that it was computed with"
+        )
+        raise ModelError(msg)
+    return system
+
+
 def _system(branch: Branch, model: Model | System | str | None) -> System:
     info = branch.system
+    if model is None:
+        known = getattr(branch.origin, "system", branch.origin)
+        model = known if isinstance(known, System) else None
     if model is None:
         for point in branch.special:
             if isinstance(point.origin, Origin):
                 model = point.origin.system
                 break
+    return _from_info(info, model, f"model '{info.model}' of {branch.name}")
+
+
+def _from_info(info: SystemInfo, model: Model | System | str | None, what: str) -> System:
     if isinstance(model, System):
         return _with_values(model, info)
     if model is not None and not isinstance(model, str):
         return _with_values(system_of(model, realisation=_realisation(info)), info)
     name = model or info.loaded
     if not name:
-        msg = (
-            f"model '{info.model}' of {branch.name} was made in Python, so that no file tells its "
-            "equations; give the model"
-        )
+        msg = f"{what} was made in Python, so that no file tells its equations; give the model"
         raise UsageError(msg)
     return system_at(name, info.parameters, variant=info.variant, realisation=_realisation(info))
 

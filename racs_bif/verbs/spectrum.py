@@ -16,6 +16,8 @@ from racs_bif.shelf.load import system_of
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import pandas as pd
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from racs_bif.fractional.roots import Roots
@@ -52,6 +54,19 @@ class Spectrum:
             return np.zeros(len(self.roots.roots))
         sizes = np.maximum(np.abs(self.roots.roots), 1e-300)
         return np.asarray(apart.min(axis=1) / sizes)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the exact roots as a table: real [1/s], imaginary [rad/s], shift of each."""
+        import pandas as pd
+
+        roots = self.roots.roots
+        return pd.DataFrame({"real": roots.real, "imag": roots.imag, "shift": self.shifts})
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw roots and eigenvalues; see `racs_bif.plots.spectrum.draw`."""
+        from racs_bif.plots.spectrum import draw
+
+        return draw(self, ax=ax)
 
 
 @single_threaded

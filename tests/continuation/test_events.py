@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from racs_bif.continuation import trace
+from racs_bif.continuation import Stopped, trace
 
 TRUE = 0.31
 
@@ -66,6 +66,38 @@ def test_event_of_another_kind_is_dropped_and_explains_nothing(kinds):
     branch = trace(kinds.Pairs(lambda p: p - TRUE), [0, 0], (-1, 1), [Picky()])
     assert branch.special == []
     assert "unexplained" in branch.message
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-15, -1e-15, 1e-12, -1e-12])
+def test_a_crossing_at_the_end_of_the_span_is_found_in_spite_of_rounding(kinds, rounding):
+    problem = kinds.Pairs(lambda p: p - TRUE + (rounding if p == TRUE else 0.0))
+    for span, direction in (((-1, TRUE), None), ((TRUE, 2), None), ((TRUE, 2), -1)):
+        start = span[0] if direction is None else span[1]
+        branch = trace(problem, [np.sin(start), start], span, [kinds.Hopf()], direction=direction)
+        assert found(branch) == [TRUE]
+        assert branch.message == ""
+
+
+def test_branches_that_cross_at_the_end_of_the_span(kinds):
+    def curve(x, p):
+        return x - math.sin(p)
+
+    problem = kinds.Scalar(
+        lambda x, p: (p - TRUE) * curve(x, p) + curve(x, p) ** 3,
+        lambda x, p: p - TRUE + 3 * curve(x, p) ** 2,
+        lambda x, p: curve(x, p) - math.cos(p) * (p - TRUE + 3 * curve(x, p) ** 2),
+    )
+    branch = trace(problem, [math.sin(-1), -1], (-1, TRUE), [kinds.BranchPoint()])
+    assert branch.stopped is Stopped.SPAN
+    assert found(branch) == [TRUE]
+    assert branch.message == ""
+
+
+def test_a_fold_at_the_end_of_the_span(kinds):
+    fold = kinds.Scalar(lambda x, p: p + x * x, lambda x, p: 2 * x, lambda x, p: 1.0)
+    branch = trace(fold, [-1, -1], (-1, 0), [kinds.Fold()])
+    assert found(branch) == [0.0]
+    assert branch.stopped is Stopped.SPAN
 
 
 def test_several_events_in_a_step_are_sorted_and_numbered(kinds, line):

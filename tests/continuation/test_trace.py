@@ -186,6 +186,23 @@ def test_given_tangent_switches_branches(pitchfork):
     np.testing.assert_allclose(branch.points[-1].z, [-1, 1], atol=1e-12)
 
 
+@pytest.mark.parametrize("unit_x", [1e-6, 1.0, 1e6])
+def test_a_branch_that_leaves_zero_takes_natural_steps_at_once(kinds, unit_x):
+    problem = kinds.Scalar(
+        lambda x, p: p * x / unit_x - (x / unit_x) ** 3,
+        lambda x, p: (p - 3 * (x / unit_x) ** 2) / unit_x,
+        lambda x, p: x / unit_x,
+    )
+    branch = trace(problem, [0, 0], (-1, 1), [kinds.BranchPoint()], tangent=[unit_x, 0])
+    x, p = column(branch, 0) / unit_x, column(branch, 1)
+    np.testing.assert_allclose(p, x * x, atol=1e-12)
+    assert (x.min(), x.max()) == pytest.approx((-1, 1), rel=1e-9)
+    assert len(branch.points) < 100
+    assert np.sort(np.abs(x))[1] > 1e-4
+    assert names(branch) == ["BP1"]
+    assert branch.message == ""
+
+
 def test_given_tangent_that_leads_nowhere_is_an_error(kinds):
     cross = kinds.Scalar(
         lambda x, p: x * x + p * p + 1e-3, lambda x, p: 2 * x, lambda x, p: 2 * p, spectral=False
@@ -459,6 +476,27 @@ def test_adaptation_may_change_the_dimension(kinds):
     assert branch["G1"].z[-1] == pytest.approx(1, abs=1e-10)
     assert all(point.z[0] == pytest.approx(math.sin(point.z[-1])) for point in branch.points)
     assert branch.message == ""
+    wanted = trace(problem, [0, 0], (0, 3), targets=[0.0, 2.0])
+    assert [special.z[-1] for special in wanted.special] == [0.0, 2.0]
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_a_branch_to_infinity_says_so(kinds, unit):
+    problem = kinds.Scalar(
+        lambda x, p: p * x / unit - 1, lambda x, p: p / unit, lambda x, p: x / unit
+    )
+    branch = trace(problem, [unit, 1], (-1, 1), [kinds.Fold(), kinds.Hopf()], targets=[0.1])
+    assert branch.stopped is Stopped.INFINITY
+    assert names(branch) == ["UZ1"]
+    assert len(branch.points) < 150
+    assert branch.message == ""
+    # a steep branch that is not infinite goes on
+    steep = kinds.Scalar(
+        lambda x, p: x - 1e5 * math.tanh(1e5 * p),
+        lambda x, p: 1.0,
+        lambda x, p: -1e10 / math.cosh(1e5 * p) ** 2 if abs(p) < 1e-3 else 0.0,
+    )
+    assert trace(steep, [-1e5, -1], (-1, 1)).stopped is Stopped.SPAN
 
 
 def test_runs_are_reproducible_bit_for_bit(kinds, fold):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -11,7 +13,7 @@ from racs_bif.symbolic.paths import BasePath
 
 
 class WrittenField(VectorField):
-    """A vector field from expressions; orbits need f, f_x and f_p only."""
+    """A vector field from expressions."""
 
     def __init__(self, equations, parameters):
         self.states = tuple(equations)
@@ -23,6 +25,31 @@ class WrittenField(VectorField):
         self._f = sp.lambdify(names, list(expressions), "numpy")
         self._fx = sp.lambdify(names, list(expressions.jacobian(x)), "numpy")
         self._fp = sp.lambdify(names, list(expressions.jacobian(p)), "numpy")
+        self._symbols = x, p, expressions
+
+    @cached_property
+    def _forms(self):
+        """Second and third derivatives, and the mixed one, along directions."""
+        x, p, value = self._symbols
+        u, v, w = (sp.Matrix(sp.symbols(f"{name}_:{len(x)}")) for name in "uvw")
+        dp = sp.Matrix(sp.symbols(f"dp_:{len(p)}"))
+        second = (value.jacobian(x) * u).jacobian(x) * v
+        third = second.jacobian(x) * w
+        mixed = (value.jacobian(x) * u).jacobian(p) * dp
+        return {
+            name: sp.lambdify(
+                [*x, *p, *(d for group in directions for d in group)], list(form), cse=True
+            )
+            for name, form, directions in (
+                ("xx", second, (u, v)),
+                ("xxx", third, (u, v, w)),
+                ("xp", mixed, (u, dp)),
+            )
+        }
+
+    def _form(self, name, x, p, *directions):
+        rows = self._forms[name](*x, *p, *(d for group in directions for d in group))
+        return np.array([np.broadcast_to(row, directions[0].shape[1:]) for row in rows])
 
     def _rows(self, function, x, p):
         columns = x.shape[1:]
@@ -41,13 +68,13 @@ class WrittenField(VectorField):
         return np.einsum("ij...,j->i...", rows, dp)
 
     def f_xx(self, x, p, u, v):
-        raise NotImplementedError("orbits never ask for it")
+        return self._form("xx", x, p, u, v)
 
     def f_xxx(self, x, p, u, v, w):
-        raise NotImplementedError("orbits never ask for it")
+        return self._form("xxx", x, p, u, v, w)
 
     def f_xp(self, x, p, v, dp):
-        raise NotImplementedError("orbits never ask for it")
+        return self._form("xp", x, p, v, dp)
 
 
 @pytest.fixture(scope="session")
