@@ -33,12 +33,20 @@ DESCRIPTION: Final = (
     "and PARAM2, with its points of codimension two. hopf, fold and bp are equilibria (BT, GH, ZH, "
     "HH, CP); with fractional elements they are followed on the exact characteristic equation "
     "unless told otherwise. lpc, pd and ns are cycles, followed by collocation on the realisation "
-    "(CPC, GPD, CH, R1 to R4, LPPD, LPNS, PDNS, NSNS). Writes branches.nc, diagram.png, "
-    "diagram.svg and summary.json."
+    "(CPC, GPD, CH, R1 to R4, LPPD, LPNS, PDNS, NSNS); homoclinic is an orbit of one long period "
+    "near a homoclinic one. Writes branches.nc, diagram.png, diagram.svg and summary.json."
 )
 FILES: Final = ("branches.nc", "diagram.png", "diagram.svg", "summary.json")
-KINDS: Final = {"hopf": "H", "fold": "LP", "bp": "BP", "lpc": "LPC", "pd": "PD", "ns": "NS"}
-CYCLES: Final = ("lpc", "pd", "ns")
+KINDS: Final = {
+    "hopf": "H",
+    "fold": "LP",
+    "bp": "BP",
+    "lpc": "LPC",
+    "pd": "PD",
+    "ns": "NS",
+    "homoclinic": "EP",
+}
+CYCLES: Final = ("lpc", "pd", "ns", "homoclinic")
 
 
 class Spans(argparse.Action):
@@ -259,7 +267,7 @@ def _shown(curve: Branch) -> dict[str, str]:
     """Return the measures of a curve that its table shows, and their headings."""
     if "period" not in curve.measures:
         return {"omega": "rad/s", "l1": "l1"}
-    others = {"angle": "angle, rad", "c": "c", "Re d": "Re d"}
+    others = {"angle": "angle, rad", "c": "c", "Re d": "Re d", "shift": "shift"}
     return {"period": "period, s"} | {k: v for k, v in others.items() if k in curve.measures}
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from racs_bif.results.diagram import Diagram
     from racs_bif.results.special import SpecialPoint
 
-_CYCLES: Final = ("LPC", "PD", "NS")
+_CYCLES: Final = ("LPC", "PD", "NS", "EP")
 _PROBES: Final = 6
 
 
@@ -40,19 +40,28 @@ def starting_point(
     for more in _searches(system, arguments, label, (span, task), troubles):
         found += more
         diagram = Diagram(*found)
-        there = [point for point in diagram.special_points if point.label == label]
+        there = _fitting(diagram, label)
         for point in there:
             if arguments.point in {None, point.name}:
                 return point
-    there = [point for point in Diagram(*found).special_points if point.label == label]
+    there = _fitting(Diagram(*found), label)
     names = ", ".join(point.name for point in there)
     if there:
         msg = f"no point '{arguments.point}'; there are: {names}"
     else:
         low, high = span
-        msg = f"no {label} as {arguments.first} goes from {low:g} to {high:g}; give another --span"
+        what = "orbit that tends to a homoclinic one" if label == "EP" else label
+        msg = f"no {what} as {arguments.first} goes from {low:g} to {high:g}; give another --span"
         msg += f" ({'; '.join(troubles)})" if troubles else ""
     raise UsageError(msg)
+
+
+def _fitting(diagram: Diagram, label: str) -> list[SpecialPoint]:
+    """Return the points of a label; of end points, those that tend to a homoclinic orbit."""
+    points = [point for point in diagram.special_points if point.label == label]
+    if label != "EP":
+        return points
+    return [point for point in points if point.data.get("connection") == "homoclinic"]
 
 
 def _searches(

@@ -24,6 +24,7 @@ from racs_bif.orbits.sparse_jacobian import sparse_jacobian
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Point
     from racs_bif.continuation.problem import Solver
+    from racs_bif.orbits.equations import Active
     from racs_bif.orbits.mesh import Mesh
     from racs_bif.orbits.reference import Reference
     from racs_bif.symbolic.field import Array, VectorField
@@ -102,7 +103,7 @@ class CollocationProblem(CollocatedProblem):
         """Return the period, in units of time."""
         return float(z[-3])
 
-    def active(self, z: Array) -> float:
+    def active(self, z: Array) -> Active:
         """Return the active parameter."""
         return float(z[-1])
 
@@ -232,7 +233,7 @@ class CollocationProblem(CollocatedProblem):
         reference, n = self.reference(z), self._size
         moved = Piecewise(reference.mesh, self.nodes(tangent))
         shift = float(np.sum(reference.weights * moved.stages()))
-        rates = self.equations.rates(self.nodes(z).reshape(-1, n), float(z[-1]))
+        rates = self.equations.rates(self.nodes(z).reshape(-1, n), self.active(z))
         turned = np.array(tangent)
         turned[:-TAIL] -= shift * self.period(z) * rates.ravel()
         turned[-2] = 0.0
@@ -265,7 +266,7 @@ class CollocationProblem(CollocatedProblem):
         curve, times = self.curve(z), equidistant(mesh, self._degree)
         there = Piecewise(mesh, curve(times))
         number = self.history.add(there, self._scales_of(z))
-        found = self.join(there.nodes, self.period(z), float(z[-1]), number)
+        found = self.join(there.nodes, float(z[-3]), float(z[-1]), number)
         if tangent is None:
             row = np.zeros(len(found))
             row[-1] = 1.0

@@ -91,6 +91,10 @@ class OrbitProblem(Problem):
     def sample(self, z: Array, fractions: Array) -> Array:
         """Return the states (n, m) at fractions (m,) of the period."""
 
+    def base(self, z: Array) -> Array:
+        """Return the base parameters (np,)."""
+        return self.path.vector(z[-len(self.path.names) :])
+
     def at_crossing(self, z: Array) -> bool:
         """Return whether `z` is the branch point that the branch begins at."""
         if self.crossing is None or len(z) != len(self.crossing):

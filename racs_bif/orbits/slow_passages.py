@@ -80,7 +80,7 @@ def saddles_of(problem: OrbitProblem, z: Array, own: int) -> tuple[Saddle, ...]:
     own : int
         Number of the model's own states: distances are measured in these.
     """
-    field, p = problem.field, problem.path.vector(float(z[-1]))
+    field, p = problem.field, problem.base(z)
     states = problem.sample(z, np.linspace(0.0, 1.0, _SAMPLES)[:-1])
     ranges = np.maximum(np.ptp(states, axis=1), 1e-4 * np.abs(states).max() + 1e-300)[:own, None]
     speeds = np.linalg.norm(field.f(states, p)[:own] / ranges, axis=0)

@@ -24,6 +24,7 @@ _LOOKS: Final = {
     "BC": ("branch points", VERMILION, "-"),
     "LPCC": ("folds of cycles", BLACK, "--"),
     "PDC": ("period doublings", VERMILION, "--"),
+    "HOM": ("homoclinic orbit", BLACK, ":"),
     "NSC": ("Neimark-Sacker points", BLUE, "-."),
 }
 _OTHER: Final = ("curve", VERMILION, "-")

@@ -24,6 +24,7 @@ from racs_bif.verbs import assemble
 from racs_bif.verbs.curve_start import CurveStart, frequency_of
 from racs_bif.verbs.cycle_curves import STARTS, follow_cycles, kind_of, starts_cycles
 from racs_bif.verbs.equilibria import check_span
+from racs_bif.verbs.homoclinic_curves import KIND, follow_homoclinic
 from racs_bif.verbs.origin import Origin, origin_of
 
 if TYPE_CHECKING:
@@ -77,15 +78,17 @@ def continue_curve(  # noqa: PLR0913 - each is one choice of the user's
     spans : pair or mapping of (float, float), optional
         Their intervals, SI. Where left out: that of the branch that the point lies on, or a tenth
         to ten times the value at the point, within the model's validity.
-    kind : {"hopf", "fold", "bp", "lpc", "pd", "ns"}, optional
+    kind : {"hopf", "fold", "bp", "lpc", "pd", "ns", "homoclinic"}, optional
         Which curve; by default the one of the point's label, and at a point where two meet the
         one that it was not found on. ``"hopf2"`` is the other Hopf curve through a double Hopf
         point. GH starts "lpc", ZH and HH start "ns", at a cycle that their normal form predicts.
+        "homoclinic" starts at an orbit of long period, or at BT: see `follow_homoclinic`.
     operator : {"realised", "exact"}
         What equilibria of a model with fractional elements are followed on: its realisation, or
         the exact characteristic matrix.
     size : float, optional
-        Amplitude of the cycle that GH, ZH or HH predicts, in the units of the states.
+        Amplitude of the cycle that GH, ZH or HH predicts, in the units of the states; epsilon of
+        the homoclinic orbit at BT.
     orbit_settings : CollocationSettings, optional
         How cycles are resolved.
     settings : StepSettings, optional
@@ -112,6 +115,16 @@ def continue_curve(  # noqa: PLR0913 - each is one choice of the user's
         raise UsageError(msg)
     origin = origin_of(point)
     system = replace(origin.system, values=origin.parameters)
+    if kind == KIND:
+        return follow_homoclinic(
+            origin,
+            point,
+            ((parameters[0], parameters[1]), _spans(system, origin, parameters, spans)),
+            size=size,
+            settings=settings,
+            orbit_settings=orbit_settings,
+            progress=progress,
+        )
     if starts_cycles(point, kind):
         followed = kind_of(point, kind)
         plane = (parameters[0], parameters[1]), _spans(system, origin, parameters, spans)
@@ -154,7 +167,7 @@ def _kind(point: SpecialPoint, wanted: str | None) -> str:
         return (others or possible)[0]
     plain = wanted.removesuffix("2")
     if plain not in _KINDS:
-        msg = f"unknown kind of curve '{wanted}'; there are: {', '.join((*_KINDS, *STARTS))}"
+        msg = f"unknown kind of curve '{wanted}'; there are: {', '.join((*_KINDS, *STARTS, KIND))}"
         raise UsageError(msg)
     if plain not in possible or (wanted != plain and point.label != "HH"):
         can = ", ".join(("HH",) if wanted == "hopf2" else _KINDS[plain])

@@ -59,7 +59,7 @@ def assert_jacobian(problem, z, rtol=2e-5):
 def test_jacobians(shimmy, names, kind, operator):
     origin = shimmy.origin
     system = replace(origin.system, values=origin.parameters)
-    start = curves._Start(system, origin.equilibrium, names, (1.0, 2.0), shimmy.omega)
+    start = curves.CurveStart(system, origin.equilibrium, names, (1.0, 2.0), shimmy.omega)
     problem, z = start.problem(kind, operator)
     if kind == "bp":
         if names[0] == "gamma":
