@@ -147,14 +147,17 @@ def from_exact_hopf(
     settings = settings or BalanceSettings()
     balance = Balance(model, path, hopf.value)
     kept = list(balance.kept)
-    amplitude = _amplitude(hopf, expand(model, path, hopf))
+    expansion = expand(model, path, hopf)
+    amplitude = _amplitude(hopf, expansion)
     spectrum = np.zeros((settings.harmonics + 1, len(kept)), dtype=complex)
     spectrum[0] = hopf.X[kept]
     still = to_real(spectrum)
     spectrum[0], spectrum[1] = 0.0, amplitude * hopf.q[kept]
     moving = to_real(spectrum)
     sizes = amplitudes(moving)
-    scales = np.maximum(sizes, _STILL * sizes.max())
+    # what the mode leaves at rest, as symmetry may have it, moves by its square
+    bent = amplitude**2 * (np.abs(expansion.mean) + 2.0 * np.abs(expansion.second))[kept]
+    scales = np.maximum(np.maximum(sizes, bent), _STILL * sizes.max())
     reference = PhaseReference(still, turned(moving), scales, degenerate=True)
     problem = HarmonicBalanceProblem(model, path, balance, reference, settings)
     z = problem.join(still, 2.0 * np.pi / hopf.omega, hopf.value)

@@ -93,8 +93,9 @@ def _call(
 
 
 def _finite(values: Array, per_step: int, times: Array) -> None:
-    if np.isfinite(values.sum()):
-        return
+    with np.errstate(all="ignore"):  # inf - inf is what is looked for
+        if np.isfinite(values.sum()):
+            return
     good = np.isfinite(values).all(axis=1)
     if not good.all():
         time = times[int(np.argmin(good)) // per_step]

@@ -69,12 +69,16 @@ class CollocatedProblem(OrbitProblem):
         """Return the linearised equations at `z`, or where they are known within rounding of it."""
         if self._base is not None:
             known, linearised = self._base
-            alike = len(known) == len(z) and self.reference(known).mesh is self.reference(z).mesh
-            if alike and self._distance(known, z) < _SAME:
+            if len(known) == len(z) and self._alike(known, z) and self._distance(known, z) < _SAME:
                 return linearised
         linearised = self.equations.linearised(self.at(z), self.reference(z).scales)
         self._base = (np.array(z), linearised)
         return linearised
+
+    def _alike(self, known: Array, z: Array) -> bool:
+        """Return whether two orbits are on one mesh and in the same units."""
+        there, here = self.reference(known), self.reference(z)
+        return there.mesh is here.mesh and np.array_equal(there.scales, here.scales)
 
     def _distance(self, known: Array, z: Array) -> float:
         """Return how far two orbits are from each other, relative to their magnitudes."""
