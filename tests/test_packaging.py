@@ -19,7 +19,7 @@ SLOW = ("numpy", "scipy", "sympy", "matplotlib", "control", "xarray", "pandas", 
 MAIN = "pip install . && python -m racs_bif continue u 5 30"
 TESTS = 'pip install -e ".[test]" && python -m pytest'
 OWN = {"racs_bif", "models", "analyses"}
-OPTIONAL = {"flint", "distributed"}  # of extras; where one is missing, a user is told so
+OPTIONAL = {"flint", "distributed", "plotly"}  # of extras; where one is missing, a user is told so
 
 
 def run(*command, **options):

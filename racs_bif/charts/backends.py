@@ -1,4 +1,4 @@
-"""Where the tiles of a map are computed: here, in processes of this machine, or on a cluster."""
+"""Where independent tasks are computed: here, in processes of this machine, or on a cluster."""
 
 from __future__ import annotations
 
@@ -7,35 +7,51 @@ from abc import ABC, abstractmethod
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from racs_bif.charts.maps import MapJob, Tile, compute_tile
 from racs_bif.errors import ConvergenceError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from concurrent.futures import Future
 
+Done_co = TypeVar("Done_co", covariant=True)
+"""What a task gives."""
 _AHEAD = 2
-"""Tiles handed out to each worker before any has come back: memory stays bounded."""
+"""Tasks handed out to each worker before any has come back: memory stays bounded."""
 _DEATHS = 3
 
 
+class Job(Protocol[Done_co]):
+    """Numbered tasks that do not depend on each other; must be picklable, and what they give too.
+
+    Those of a map are its tiles.
+    """
+
+    def compute(self, index: int) -> Done_co:
+        """Do one task."""
+
+
+def compute(job: Job[Done_co], index: int) -> Done_co:
+    """Do one task of a job."""
+    return job.compute(index)
+
+
 class Backend(ABC):
-    """Computes tiles, in any order."""
+    """Does tasks, in any order."""
 
     @abstractmethod
-    def run(self, job: MapJob, tiles: Sequence[int]) -> Iterator[tuple[int, Tile]]:
-        """Yield every tile with its number as it is done."""
+    def run(self, job: Job[Done_co], tiles: Sequence[int]) -> Iterator[tuple[int, Done_co]]:
+        """Yield what every task gives, with its number, as it is done."""
 
 
 class InProcess(Backend):
-    """One tile after another, here."""
+    """One task after another, here."""
 
-    def run(self, job: MapJob, tiles: Sequence[int]) -> Iterator[tuple[int, Tile]]:
-        """Yield every tile with its number."""
+    def run(self, job: Job[Done_co], tiles: Sequence[int]) -> Iterator[tuple[int, Done_co]]:
+        """Yield what every task gives, with its number."""
         for index in tiles:
-            yield index, compute_tile(job, index)
+            yield index, compute(job, index)
 
 
 class LocalProcesses(Backend):
@@ -60,8 +76,8 @@ class LocalProcesses(Backend):
             raise UsageError(msg)
         self.workers = workers
 
-    def run(self, job: MapJob, tiles: Sequence[int]) -> Iterator[tuple[int, Tile]]:
-        """Yield every tile with its number as it is done.
+    def run(self, job: Job[Done_co], tiles: Sequence[int]) -> Iterator[tuple[int, Done_co]]:
+        """Yield what every task gives, with its number, as it is done.
 
         Raises
         ------
@@ -84,13 +100,13 @@ class LocalProcesses(Backend):
                 raise ConvergenceError(msg) from None
             return
 
-    def _run(self, job: MapJob, tiles: list[int]) -> Iterator[tuple[int, Tile]]:
+    def _run(self, job: Job[Done_co], tiles: list[int]) -> Iterator[tuple[int, Done_co]]:
         waiting = iter(tiles)
         pool = ProcessPoolExecutor(
             self.workers, mp_context=get_context("spawn"), initializer=_receive, initargs=(job,)
         )
         try:
-            running: dict[Future[Tile], int] = {}
+            running: dict[Future[Any], int] = {}
             for index in itertools.islice(waiting, _AHEAD * self.workers):
                 running[pool.submit(_compute, index)] = index
             while running:
@@ -107,18 +123,18 @@ class LocalProcesses(Backend):
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-_job: MapJob | None = None
+_job: Job[Any] | None = None
 
 
-def _receive(job: MapJob) -> None:
+def _receive(job: Job[Any]) -> None:
     """Keep the job in a worker, which then gets numbers of tiles only."""
     global _job  # noqa: PLW0603 - a process of its own
     _job = job
 
 
-def _compute(index: int) -> Tile:
+def _compute(index: int) -> Any:  # noqa: ANN401 - whatever the job gives
     assert _job is not None  # `_receive` ran first
-    return compute_tile(_job, index)
+    return compute(_job, index)
 
 
 def choose_backend(workers: int = 0, scheduler: str | None = None) -> Backend:

@@ -12,6 +12,7 @@ from racs_bif.continuation.settings import StepSettings
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.trace import trace
 from racs_bif.equilibria.generalised_hopf import GeneralisedHopf
+from racs_bif.fractional.exact import ExactModel
 from racs_bif.fractional.static import StaticField
 
 if TYPE_CHECKING:
@@ -169,7 +170,10 @@ def _problem(
         "fold": FoldBoundary,
     }
     extra = {"hopf": [seed.omega], "static": [0.0], "fold": []}[seed.kind]
-    static = StaticField(system.exact)
+    # Static gains are exact: folds and static losses are those of the exact model, whose second
+    # derivatives are known.
+    exact = system.exact if seed.kind == "hopf" else ExactModel(system.field)
+    static = StaticField(exact)
     problem = kinds[seed.kind](static, system.field, plane.path, plane.spans[0])
     z = np.concatenate([seed.X, extra, plane.values(seed.place)])
     return problem, z

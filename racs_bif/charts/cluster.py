@@ -1,12 +1,11 @@
-"""Tiles on an existing Dask cluster (extra ``cluster``)."""
+"""Tasks on an existing Dask cluster (extra ``cluster``)."""
 
 from __future__ import annotations
 
 import itertools
 from typing import TYPE_CHECKING, Any
 
-from racs_bif.charts.backends import Backend
-from racs_bif.charts.maps import MapJob, Tile, compute_tile
+from racs_bif.charts.backends import Backend, Done_co, Job, compute
 from racs_bif.errors import ConvergenceError, UsageError
 
 if TYPE_CHECKING:
@@ -18,7 +17,7 @@ _PATIENCE = 20.0
 
 
 class DaskCluster(Backend):
-    """The workers of a Dask scheduler; a tile whose worker dies goes to another.
+    """The workers of a Dask scheduler; a task whose worker dies goes to another.
 
     Workers need racs_bif installed in the same version.
 
@@ -42,15 +41,15 @@ class DaskCluster(Backend):
             raise UsageError(msg) from None
         self._dask: Any = distributed
 
-    def run(self, job: MapJob, tiles: Sequence[int]) -> Iterator[tuple[int, Tile]]:
-        """Yield every tile with its number as it is done.
+    def run(self, job: Job[Done_co], tiles: Sequence[int]) -> Iterator[tuple[int, Done_co]]:
+        """Yield what every task gives, with its number, as it is done.
 
         Raises
         ------
         UsageError
             If no scheduler answers at the address.
         ConvergenceError
-            If the cluster gives a tile up.
+            If the cluster gives a task up.
         """
         try:
             client = self._dask.Client(self.address, timeout=_PATIENCE, set_as_default=False)
@@ -63,15 +62,15 @@ class DaskCluster(Backend):
     def _run(
         self,
         client: Any,  # noqa: ANN401 - has no types
-        job: MapJob,
+        job: Job[Done_co],
         tiles: Sequence[int],
-    ) -> Iterator[tuple[int, Tile]]:
+    ) -> Iterator[tuple[int, Done_co]]:
         waiting = iter(tiles)
         # Not scattered: data held by one worker alone would be lost with it.
         sent = client.submit(_same, job, pure=False, retries=_RETRIES)
 
         def hand(index: int) -> Any:  # noqa: ANN401 - as above
-            return client.submit(compute_tile, sent, index, pure=False, retries=_RETRIES)
+            return client.submit(compute, sent, index, pure=False, retries=_RETRIES)
 
         ahead = _AHEAD * max(len(client.scheduler_info()["workers"]), 1)
         numbers = {}
@@ -84,7 +83,7 @@ class DaskCluster(Backend):
                 tile = future.result()
             except Exception as error:
                 msg = (
-                    f"the cluster gave up tile {index}: {type(error).__name__}: {error}; see that "
+                    f"the cluster gave up task {index}: {type(error).__name__}: {error}; see that "
                     "its workers have this racs_bif, then go on with --resume"
                 )
                 raise ConvergenceError(msg) from error
@@ -97,5 +96,5 @@ class DaskCluster(Backend):
                 running.add(new)
 
 
-def _same(job: MapJob) -> MapJob:
+def _same(job: Job[Done_co]) -> Job[Done_co]:
     return job

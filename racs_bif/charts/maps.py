@@ -15,6 +15,7 @@ from racs_bif.charts.damping import rightmost
 from racs_bif.charts.lattice import NOTHING, Lattice
 from racs_bif.charts.sheet import Sheet
 from racs_bif.charts.sums import LARGEST, expand
+from racs_bif.charts.sweeps import SWEEPS, Sweep, nothing, swept
 from racs_bif.errors import UsageError
 from racs_bif.numerics.threads import single_threaded
 
@@ -24,9 +25,11 @@ if TYPE_CHECKING:
     from racs_bif.charts.plane import Plane
     from racs_bif.symbolic.field import Array
 
-QUANTITIES: Final = ("count", "damping")
+QUANTITIES: Final = ("count", "damping", *SWEEPS)
 Tile = dict[str, "NDArray[np.generic]"]
 _SIDE: Final = 64
+_SIDE_OF_SWEEPS: Final = 16
+"""Simulations take longer: smaller tiles are lost and shown less."""
 _NEAREST: Final = 3
 _AXIS: Final = 1e-9
 _SHORTEST: Final = 2.0**-16
@@ -42,10 +45,13 @@ class MapJob:
         The plane.
     shape : (int, int)
         Cells along the first and the second parameter; values are those at their middles.
-    quantity : {"count", "damping"}
-        Number of unstable roots only, or the rightmost root besides.
+    quantity : str
+        One of `QUANTITIES`: the number of unstable roots only, the rightmost root besides, or what
+        simulations settle on.
     places, states : arrays (2, m) and (size, m)
         Where equilibria are known already, and what they are.
+    sweep : Sweep, optional
+        What is simulated, where that is what the map is of.
     """
 
     plane: Plane
@@ -53,9 +59,12 @@ class MapJob:
     quantity: str
     places: Array
     states: Array
+    sweep: Sweep | None = None
 
     @classmethod
-    def over(cls, lattice: Lattice, shape: tuple[int, int], quantity: str) -> MapJob:
+    def over(
+        cls, lattice: Lattice, shape: tuple[int, int], quantity: str, sweep: Sweep | None = None
+    ) -> MapJob:
         """Return the job over a plane that was searched.
 
         Raises
@@ -70,7 +79,10 @@ class MapJob:
             msg = f"unknown map '{quantity}'; there are: {', '.join(QUANTITIES)}"
             raise UsageError(msg)
         size = lattice.plane.system.compiled.size
-        if size > LARGEST:
+        if (quantity in SWEEPS) != (sweep is not None):
+            msg = f"a map of '{quantity}' {'needs' if sweep is None else 'has no'} simulations"
+            raise UsageError(msg)
+        if size > LARGEST and sweep is None:
             msg = (
                 f"maps are for models with up to {LARGEST} states and elements, here {size}; "
                 "draw the chart without one"
@@ -78,7 +90,7 @@ class MapJob:
             raise UsageError(msg)
         nodes = [node for node in lattice.nodes.values() if node.count != NOTHING]
         places = np.array([node.place for node in nodes]).T
-        return cls(lattice.plane, shape, quantity, places, np.array([n.X for n in nodes]).T)
+        return cls(lattice.plane, shape, quantity, places, np.array([n.X for n in nodes]).T, sweep)
 
     @property
     def tiles(self) -> int:
@@ -87,15 +99,19 @@ class MapJob:
 
     @cached_property
     def _corners(self) -> list[tuple[int, int]]:
-        rows, columns = (range(0, n, _SIDE) for n in self.shape)
+        rows, columns = (range(0, n, self._side) for n in self.shape)
         return [(i, j) for i in rows for j in columns]
+
+    @property
+    def _side(self) -> int:
+        return _SIDE if self.sweep is None else _SIDE_OF_SWEEPS
 
     def window(self, index: int) -> tuple[slice, slice]:
         """Return the cells of a tile, along both parameters."""
         i, j = self._corners[index]
         return (
-            slice(i, min(i + _SIDE, self.shape[0])),
-            slice(j, min(j + _SIDE, self.shape[1])),
+            slice(i, min(i + self._side, self.shape[0])),
+            slice(j, min(j + self._side, self.shape[1])),
         )
 
     @cached_property
@@ -105,20 +121,28 @@ class MapJob:
 
         system, plane = self.plane.system, self.plane
         told = (__version__, system.compiled.digest, plane.names, plane.spans, self.shape)
-        digest = hashlib.sha256(repr((*told, self.quantity, _SIDE)).encode())
+        digest = hashlib.sha256(repr((*told, self.quantity, self._side, self.sweep)).encode())
+        digest.update(repr((type(system).__name__, system.settings)).encode())
         for array in (system.values, self.places, self.states):
             digest.update(np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()
 
-    def empty(self) -> Tile:
-        """Return the arrays of the whole map, with nothing known."""
+    def compute(self, index: int) -> Tile:
+        """Compute one tile; see `compute_tile`."""
+        return compute_tile(self, index)
+
+    def empty(self, shape: tuple[int, ...] | None = None) -> Tile:
+        """Return the arrays of the whole map, or of another shape, with nothing known."""
+        shape = self.shape if shape is None else shape
         whole: Tile = {
-            "unstable": np.full(self.shape, NOTHING, dtype=np.int8),
-            "evaluations": np.zeros(self.shape, dtype=np.int32),
+            "unstable": np.full(shape, NOTHING, dtype=np.int8),
+            "evaluations": np.zeros(shape, dtype=np.int32),
         }
+        if self.sweep is not None:
+            whole |= nothing(shape)
         if self.quantity == "damping":
-            whole["sigma"] = np.full(self.shape, np.nan)
-            whole["omega"] = np.full(self.shape, np.nan)
+            whole["sigma"] = np.full(shape, np.nan)
+            whole["omega"] = np.full(shape, np.nan)
         return whole
 
 
@@ -137,8 +161,9 @@ def compute_tile(job: MapJob, index: int) -> Tile:
     -------
     dict of arrays (rows, columns)
         ``unstable`` (-1 where roots cannot be counted, -2 where there is no equilibrium),
-        ``evaluations``; and ``sigma`` [1/s] and ``omega`` [rad/s] of the rightmost root, NaN where
-        it is not certain.
+        ``evaluations``, steps of simulations among them; ``sigma`` [1/s] and ``omega`` [rad/s] of
+        the rightmost root, NaN where it is not certain; or ``value``, ``error`` and ``status`` of
+        `racs_bif.charts.sweeps.swept`.
     """
     window = job.window(index)
     first, second = (
@@ -147,35 +172,44 @@ def compute_tile(job: MapJob, index: int) -> Tile:
     )
     places = np.array([a.ravel() for a in np.meshgrid(first, second, indexing="ij")])
     X, there = _equilibria(job, places)
-    cells = np.flatnonzero(there)
-    unstable = np.full(places.shape[1], NOTHING, dtype=np.int8)
-    evaluations = np.zeros(places.shape[1], dtype=np.int32)
-    root = np.full(places.shape[1], np.nan, dtype=complex)
-    if len(cells):
-        P = job.plane.vectors(places[:, cells])
-        sheet = Sheet(job.plane)
-        sums = expand(sheet.core(X[:, cells], P), sheet.laws(P))
-        counts = count_right(sums)
-        unstable[cells] = counts.unstable
-        evaluations[cells] = counts.evaluations
-        if job.quantity == "damping":
-            found = rightmost(job.plane.system.exact, sums, X[:, cells], P)
-            evaluations[cells] += found.evaluations
-            # Two ways to the same: a root right of the axis, and a count above zero.
-            with np.errstate(invalid="ignore"):
-                doubtful = (found.root.real > 0.0) != (counts.unstable > 0)
-                near = np.abs(found.root.real) <= _AXIS * np.abs(found.root)
-            wrong = doubtful & ~near & np.isfinite(found.root.real) & (counts.unstable >= 0)
-            unstable[cells[wrong]] = UNKNOWN
-            root[cells] = np.where(wrong, np.nan, found.root)
     shape = (len(first), len(second))
-    tile: Tile = {
-        "unstable": unstable.reshape(shape),
-        "evaluations": evaluations.reshape(shape),
-    }
-    if job.quantity == "damping":
-        tile["sigma"], tile["omega"] = root.real.reshape(shape), root.imag.reshape(shape)
-    return tile
+    known = np.flatnonzero(there)
+    tile = job.empty((places.shape[1],))
+    if len(known):
+        P = job.plane.vectors(places[:, known])
+        _roots(job, tile, known, X[:, known], P)
+        if job.sweep is not None:
+            values, status, steps = swept(job.plane, job.quantity, job.sweep, X[:, known], P)
+            for name, column in values.items():
+                tile[name][known] = column
+            tile["status"][known] = status
+            counted = tile["evaluations"][known].astype(np.int64)
+            tile["evaluations"][known] = (counted + steps).astype(np.int32)
+    return {name: column.reshape(shape) for name, column in tile.items()}
+
+
+def _roots(job: MapJob, tile: Tile, cells: NDArray[np.intp], X: Array, P: Array) -> None:
+    """Fill in what the characteristic roots tell of cells, at equilibria X (size, N)."""
+    if job.plane.system.compiled.size > LARGEST:
+        tile["unstable"][cells] = UNKNOWN
+        return
+    sheet = Sheet(job.plane)
+    sums = expand(sheet.core(X, P), sheet.laws(P))
+    counts = count_right(sums)
+    tile["unstable"][cells] = counts.unstable
+    tile["evaluations"][cells] = counts.evaluations
+    if job.quantity != "damping":
+        return
+    found = rightmost(job.plane.system.exact, sums, X, P)
+    tile["evaluations"][cells] = (counts.evaluations + found.evaluations).astype(np.int32)
+    # Two ways to the same: a root right of the axis, and a count above zero.
+    with np.errstate(invalid="ignore"):
+        doubtful = (found.root.real > 0.0) != (counts.unstable > 0)
+        near = np.abs(found.root.real) <= _AXIS * np.abs(found.root)
+    wrong = doubtful & ~near & np.isfinite(found.root.real) & (counts.unstable >= 0)
+    tile["unstable"][cells[wrong]] = UNKNOWN
+    root = np.where(wrong, np.nan, found.root)
+    tile["sigma"][cells], tile["omega"][cells] = root.real, root.imag
 
 
 def _equilibria(job: MapJob, places: Array) -> tuple[Array, NDArray[np.bool_]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -98,8 +99,17 @@ def search(
     tell = progress or (lambda _: None)
 
     def follow(seed: Seed) -> Boundary:
-        tell(f"tracing boundary {len(found.boundaries) + 1}")
-        return trace_boundary(plane, seed, settings, lyapunov=lyapunov, marks=marks)
+        name = f"tracing boundary {len(found.boundaries) + 1}"
+        points = itertools.count(1)
+        tell(name)
+        return trace_boundary(
+            plane,
+            seed,
+            settings,
+            lyapunov=lyapunov,
+            marks=marks,
+            progress=lambda _: tell(f"{name}: {next(points)} points"),
+        )
 
     lattice = Lattice(plane, settings.depth)
     spacing = 2 ** (settings.depth - settings.coarse)
@@ -114,7 +124,7 @@ def search(
         unsure = [cell for cell in found.cells if cell[2] > 1 and _hides(found, cell)]
         if not unsure:
             break
-        tell("refining")
+        tell(f"refining: {len(lattice.nodes)} places counted")
         _divide(found, unsure)
     return found
 

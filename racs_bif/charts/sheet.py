@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from racs_bif.charts.rational import RationalSystem
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -55,6 +57,8 @@ class Sheet:
         """Return the laws of all elements at base parameters P (np, N)."""
         if not self.compiled.elements:
             return ()
+        if isinstance(self.plane.system, RationalSystem):
+            return self._rational(P)
         numbers = self.compiled.kernel("laws")(self.compiled.padded(P))
         if numbers.ndim == 1:
             numbers = np.repeat(numbers[:, None], P.shape[1], axis=1)
@@ -66,6 +70,21 @@ class Sheet:
             lowest = np.minimum(n_at.min(axis=0), d_at.min(axis=0))
             laws.append(Laws((n, n_at - lowest), (d, d_at - lowest)))
         return tuple(laws)
+
+    def _rational(self, P: Array) -> tuple[Laws, ...]:
+        """Return the laws of filters, which may differ from member to member."""
+        each = [self.plane.system.exact.field.laws(np.ascontiguousarray(p)) for p in P.T]
+        columns = []
+        for laws in zip(*each, strict=True):
+            parts = [
+                tuple(
+                    np.array([getattr(getattr(law, part), numbers) for law in laws]).T
+                    for numbers in ("coefficients", "exponents")
+                )
+                for part in ("numerator", "denominator")
+            ]
+            columns.append(Laws((parts[0][0], parts[0][1]), (parts[1][0], parts[1][1])))
+        return tuple(columns)
 
     def core(self, X: Array, P: Array) -> Array:
         """Return the core's Jacobian (N, size, size) at states X (size, N)."""

@@ -58,9 +58,11 @@ def run(arguments: Namespace) -> int:
     if span is not None:
         check_validity(system, arguments.parameter, span)
 
-    result = calibrate(system, arguments.parameter, wanted, span=span)
     from racs_bif import __version__
-    from racs_bif.cli.terminal import console
+    from racs_bif.cli.terminal import console, working
+
+    with working(arguments, f"calibrating {arguments.parameter}"):
+        result = calibrate(system, arguments.parameter, wanted, span=span)
     from racs_bif.results.summary import to_json, to_text
 
     if arguments.json:

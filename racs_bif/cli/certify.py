@@ -50,16 +50,17 @@ def configure(parser: Parser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Certify, print what was found and return whether all of it holds."""
-    from racs_bif.cli.terminal import warn
+    from racs_bif.cli.terminal import warn, working
     from racs_bif.results.summary import to_text
     from racs_bif.verbs.certify import certify
 
-    found = certify(
-        arguments.file,
-        "proof" if arguments.proof else "complete",
-        model=arguments.model,
-        tolerance=arguments.tolerance,
-    )
+    with working(arguments, f"certifying {arguments.file.name}"):
+        found = certify(
+            arguments.file,
+            "proof" if arguments.proof else "complete",
+            model=arguments.model,
+            tolerance=arguments.tolerance,
+        )
     if arguments.json:
         print(to_text(_summary(found, arguments)), end="")
     _tell(found, arguments)

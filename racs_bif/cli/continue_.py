@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import signal
 import threading
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from racs_bif.cli.following import (
+    Run,
+    follow_on,
+    follow_orbits,
+    more_branches,
+    targets,
+    tell_note,
+    wanted,
+)
 from racs_bif.cli.options import (
     add_model_options,
     add_output_options,
@@ -17,25 +26,26 @@ from racs_bif.cli.options import (
     open_system,
 )
 from racs_bif.cli.parser import Parser, choice, count_or_none, number
-from racs_bif.errors import RacsBifError, UsageError
+from racs_bif.errors import UsageError
 
 if TYPE_CHECKING:
     from argparse import Namespace
     from collections.abc import Iterator
 
-    from racs_bif.cli.terminal import Task
     from racs_bif.fractional.system import System
     from racs_bif.results.branch import Branch
     from racs_bif.results.diagram import Diagram
-    from racs_bif.results.special import SpecialPoint
 
 HELP: Final = "the diagram in one parameter: equilibria, special points, orbits"
 DESCRIPTION: Final = (
     "Follow the equilibria of a model as one parameter goes from LOW to HIGH, locate their special "
     "points, check Hopf points on the exact fractional operator, and follow the periodic orbits "
-    "born there. Writes branches.nc, diagram.png, diagram.svg and summary.json."
+    "born there. Writes branches.nc, diagram.png, diagram.svg and summary.json; while orbits are "
+    "followed, what is done so far is in unfinished.nc."
 )
 FILES: Final = ("branches.nc", "diagram.png", "diagram.svg", "summary.json")
+UNFINISHED: Final = "unfinished.nc"
+"""What is done so far, for a run that is killed."""
 DEFAULT_OUT: Final = "racs_bif_out"
 METHODS: Final = ("shooting", "collocation", "harmonic-balance", "none")
 
@@ -50,9 +60,10 @@ def configure(parser: Parser) -> None:
         nargs="+",
         action="extend",
         default=[],
-        type=number,
+        type=wanted,
         metavar="VALUE",
-        help="values of PARAM at which a point is wanted exactly",
+        help="values of PARAM at which a point is wanted exactly, or of another quantity of the "
+        "orbits: period=0.8",
     )
     parser.add_argument(
         "--orbits",
@@ -61,6 +72,22 @@ def configure(parser: Parser) -> None:
         metavar="METHOD",
         help="how periodic orbits are followed: shooting (default), collocation, "
         "harmonic-balance on the exact operator, or none to leave them out",
+    )
+    parser.add_argument(
+        "--branches",
+        type=count_or_none,
+        default=0,
+        metavar="N",
+        help="how many times orbits are followed on from period doublings (PD) and branch points "
+        "(BPC); default 0, the output says where there is more",
+    )
+    parser.add_argument(
+        "--cascade",
+        type=count_or_none,
+        default=0,
+        metavar="N",
+        help="follow the period-doubling cascade from the first PD of every branch of orbits, N "
+        "doublings deep",
     )
     parser.add_argument(
         "--probes",
@@ -87,23 +114,12 @@ def configure(parser: Parser) -> None:
     add_output_options(parser)
 
 
-@dataclass
-class Run:
-    """What was computed, and what went wrong on the way."""
-
-    branches: list[Branch] = field(default_factory=list)
-    troubles: list[str] = field(default_factory=list)
-    apart: list[str] = field(default_factory=list)
-    interrupted: bool = False
-    failure: Exception | None = None
-
-
 def run(arguments: Namespace) -> int:
     """Compute the diagram, write its files and tell what was found."""
     from racs_bif.results.atomic import check_writable
 
     span = (arguments.low, arguments.high)
-    check_span(*span, arguments.at)
+    check_span(*span, targets(arguments).get(arguments.parameter, ()))
     check_writable(arguments.out, FILES)
     system = open_system(arguments)
     _check_names(arguments, system)
@@ -113,6 +129,8 @@ def run(arguments: Namespace) -> int:
         system = fitted(system, arguments.parameter, span)
 
     done = Run()
+    if arguments.orbits != "none":
+        done.keep = partial(_keep, arguments.out / UNFINISHED)
     try:
         _compute(arguments, system, done)
     except Exception as error:  # raised again when what is there has been saved
@@ -129,6 +147,8 @@ def run(arguments: Namespace) -> int:
     with _uninterrupted():
         summary = _write(diagram, arguments)
     _tell(diagram, arguments, summary)
+    for note in [*done.notes, *more_branches(diagram, arguments)]:
+        tell_note(note, arguments)
     status = _close(done, arguments)
     if done.failure is not None:
         raise done.failure
@@ -154,11 +174,12 @@ def _compute(arguments: Namespace, system: System, done: Run) -> None:
     from racs_bif.cli.terminal import progress
     from racs_bif.verbs.all_equilibria import all_equilibria
 
-    name, span, at = arguments.parameter, (arguments.low, arguments.high), tuple(arguments.at)
+    name, span = arguments.parameter, (arguments.low, arguments.high)
+    at = tuple(targets(arguments).get(name, ()))
     with _interruptible(done), progress(arguments) as task:
         report = task("equilibria", span)
         found = all_equilibria(system, name, span, at=at, probes=arguments.probes, progress=report)
-        done.branches.extend(found)
+        done.add(found)
         if arguments.orbits == "none":
             return
         for branch in found:
@@ -166,21 +187,10 @@ def _compute(arguments: Namespace, system: System, done: Run) -> None:
             if branch.connected:
                 for point in hopf:
                     if not done.interrupted:
-                        _follow_orbits(point, arguments, done, task)
+                        follow_orbits(point, arguments, done, task)
             else:
                 done.apart.extend(point.name for point in hopf)
-
-
-def _follow_orbits(point: SpecialPoint, arguments: Namespace, done: Run, task: Task) -> None:
-    from racs_bif.verbs.orbits import continue_orbits
-
-    span, at = (arguments.low, arguments.high), tuple(arguments.at)
-    try:
-        report = task(f"orbits from {point.name}", span)
-        branch = continue_orbits(point, span, method=arguments.orbits, at=at, progress=report)
-        done.branches.append(branch)
-    except RacsBifError as error:
-        done.troubles.append(f"no orbits from {point.name}: {error}")
+        follow_on(arguments, done, task)
 
 
 @contextmanager
@@ -233,7 +243,21 @@ def _write(diagram: Diagram, arguments: Namespace) -> str:
         save_picture(figure, folder / FILES[1])
         save_picture(figure, folder / FILES[2])
         write_summary(summary, folder / FILES[3])
+    if arguments.orbits != "none":
+        with suppress(OSError):  # it holds nothing that branches.nc has not
+            (arguments.out / UNFINISHED).unlink()
     return to_text(summary)
+
+
+def _keep(path: Path, branches: list[Branch]) -> None:
+    """Put what is done so far on disk; a disk that takes nothing is told of at the end."""
+    from racs_bif.errors import FileError
+    from racs_bif.results.diagram import Diagram
+    from racs_bif.results.files import save
+
+    with suppress(FileError, OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        save(Diagram(*branches), path)
 
 
 def _tell(diagram: Diagram, arguments: Namespace, summary: str) -> None:

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 def named_equations(meta: Mapping[str, Any]) -> tuple[dict[str, str], dict[str, str]]:
     """Return equations and outputs in which outputs and derived parameters stand by name.
 
+    As they are where they hold names that the printer of equations takes for something else.
+
     Parameters
     ----------
     meta : mapping
@@ -23,9 +25,19 @@ def named_equations(meta: Mapping[str, Any]) -> tuple[dict[str, str], dict[str, 
     """
     import sympy as sp
 
+    try:
+        return _named(meta)
+    except (sp.SympifyError, SyntaxError, TypeError, AttributeError, ValueError):
+        return dict(meta["equations"]), dict(meta["outputs"])
+
+
+def _named(meta: Mapping[str, Any]) -> tuple[dict[str, str], dict[str, str]]:
+    import sympy as sp
+
     derived = {entry["name"]: entry["expression"] for entry in meta["derived"]}
     names = [*meta["equations"], *meta["outputs"], *derived]
     names += [entry["name"] for entry in meta["parameters"]]
+    names += meta["terms"]
     names += [element["output"] for element in meta["elements"]]
     symbols = {name: sp.Symbol(name) for name in names}
 

@@ -19,11 +19,16 @@ from racs_bif.cli import (
     continue_,
     curve,
     models,
+    new,
+    orbit,
+    plot,
     realisations,
+    report,
     simulate,
     spectrum,
 )
 from racs_bif.cli import run as run_
+from racs_bif.cli.logs import log_shown
 from racs_bif.cli.parser import Parser
 from racs_bif.errors import ConvergenceError, RacsBifError, UsageError, nearest
 
@@ -36,11 +41,15 @@ EARLY: Final = 1
 WRONG: Final = 2
 VERBS: Final[dict[str, ModuleType]] = {
     "continue": continue_,
+    "orbit": orbit,
     "simulate": simulate,
     "curve": curve,
     "chart": chart,
+    "plot": plot,
+    "report": report,
     "calibrate": calibrate,
     "models": models,
+    "new": new,
     "analyses": analyses,
     "run": run_,
     "spectrum": spectrum,
@@ -54,6 +63,7 @@ _THREADS: Final = (
     "MKL_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
+_VERBOSE: Final = ("-v", "--verbose", "-vv")
 _ISSUES: Final = "please report it with what -v prints"
 
 
@@ -85,10 +95,26 @@ def build_parser() -> tuple[Parser, dict[str, Parser]]:
     for name, module in VERBS.items():
         verbs[name] = table.add_parser(name, help=module.HELP, description=module.DESCRIPTION)
         module.configure(verbs[name])
-        verbs[name].add_argument(
-            "-v", "--verbose", action="store_true", help="show a traceback if something goes wrong"
-        )
+        _add_verbosity(verbs[name])
     return parser, verbs
+
+
+def _add_verbosity(parser: Parser) -> None:
+    parser.add_argument(
+        *_VERBOSE[:2],
+        action="store_const",
+        const=1,
+        default=0,
+        help="show each continuation step, and a traceback if something goes wrong",
+    )
+    parser.add_argument(
+        _VERBOSE[2],
+        dest="verbose",
+        action="store_const",
+        const=2,
+        default=0,
+        help="show trial steps too, and why they are rejected",
+    )
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -108,7 +134,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for variable in _THREADS:
         os.environ.setdefault(variable, "1")
     arguments = list(sys.argv[1:] if argv is None else argv)
-    verbose = "-v" in arguments or "--verbose" in arguments
+    verbose = not set(_VERBOSE).isdisjoint(arguments)
     try:
         return _run(arguments)
     except SystemExit as stop:  # --help and --version
@@ -149,7 +175,8 @@ def _run(arguments: list[str]) -> int:
     verbs[verb].check_options(arguments[place + 1 :])
     parsed = parser.parse_args(arguments)
     parsed.command = arguments
-    return int(VERBS[verb].run(parsed))
+    with log_shown(0 if getattr(parsed, "quiet", False) else parsed.verbose):
+        return int(VERBS[verb].run(parsed))
 
 
 def _complain(message: str) -> None:

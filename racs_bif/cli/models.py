@@ -143,7 +143,7 @@ def _print_equations(meta: Mapping[str, Any], say: Callable[..., None]) -> None:
             say(f"  {_left(row, rates)} = {right}")
     for element in meta["elements"]:
         say(f"  {element['output']} = Z(s) ({element['input']}),  Z(s) = {element['law']}")
-    for name, expression in outputs.items():
+    for name, expression in (meta["terms"] | outputs).items():
         say(f"  {name} = {expression}")
 
 

@@ -19,7 +19,7 @@ _REALISATIONS: Final = "diffusive (default), fitted, oustaloup, ...; see 'racs-b
 
 def add_model_options(parser: Parser, *, positional: bool = False) -> None:
     """Add the options that choose a model, its variant and its parameters."""
-    what = "a model's name, or a path that ends in .py"
+    what = "a model's name, or a path that ends in .py or .toml"
     if positional:
         parser.add_argument("model", nargs="?", metavar="NAME|FILE.py", help=what)
     else:
@@ -81,17 +81,19 @@ def open_system(arguments: Namespace) -> System:
     UsageError, ModelError, ParameterError
         If they cannot be used.
     """
+    from racs_bif.cli.terminal import working
     from racs_bif.shelf.load import load_model
 
     band = getattr(arguments, "band", None)
-    system = load_model(
-        arguments.model,
-        parameters=dict(arguments.values),
-        variant=arguments.variant,
-        realisation=getattr(arguments, "realisation", None),
-        band=None if band is None else (band[0], band[1]),
-        order=getattr(arguments, "sections", None) or 0,
-    )
+    with working(arguments, f"loading {arguments.model}"):
+        system = load_model(
+            arguments.model,
+            parameters=dict(arguments.values),
+            variant=arguments.variant,
+            realisation=getattr(arguments, "realisation", None),
+            band=None if band is None else (band[0], band[1]),
+            order=getattr(arguments, "sections", None) or 0,
+        )
     # A model's file may take any word for a variant; only those that it lists are meant.
     variants = system.compiled.meta["variants"]
     if arguments.variant is not None and arguments.variant not in variants:

@@ -77,6 +77,7 @@ def configure(parser: Parser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Compare, write the files and print the table."""
+    from racs_bif.cli.terminal import working
     from racs_bif.plots.realisations import picture
     from racs_bif.plots.style import save_picture
     from racs_bif.results.atomic import check_writable, staged
@@ -85,9 +86,11 @@ def run(arguments: Namespace) -> int:
 
     check_writable(arguments.out, FILES)
     band = None if arguments.band is None else (arguments.band[0], arguments.band[1])
-    table = compare_realisations(
-        open_system(arguments), along=arguments.along, band=band, order=arguments.sections or 0
-    )
+    system = open_system(arguments)
+    with working(arguments, "comparing realisations"):
+        table = compare_realisations(
+            system, along=arguments.along, band=band, order=arguments.sections or 0
+        )
     whole = {
         "schema": 1,
         "version": table.system.version,

@@ -96,7 +96,9 @@ def _options(function: Callable[..., Any], values: dict[str, float], path: Path)
 @contextmanager
 def _progress(arguments: Namespace, title: str) -> Iterator[Callable[[float], None] | None]:
     """Show a bar on an interactive stderr."""
-    if arguments.quiet or not sys.stderr.isatty():
+    from racs_bif.cli.terminal import interactive
+
+    if not interactive(arguments):
         yield None
         return
     from rich.console import Console

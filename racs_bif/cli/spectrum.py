@@ -51,6 +51,7 @@ def configure(parser: Parser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Find the roots, write the files and print a table."""
+    from racs_bif.cli.terminal import working
     from racs_bif.plots.spectrum import picture
     from racs_bif.plots.style import save_picture
     from racs_bif.results.atomic import check_writable, staged
@@ -58,7 +59,9 @@ def run(arguments: Namespace) -> int:
     from racs_bif.verbs.spectrum import spectrum
 
     check_writable(arguments.out, FILES)
-    found = spectrum(open_system(arguments), above=arguments.above)
+    system = open_system(arguments)
+    with working(arguments, "searching for roots"):
+        found = spectrum(system, above=arguments.above)
     summary = _summary(found, arguments)
     figure = picture(found)
     with staged(arguments.out) as folder:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from racs_bif.results.special import SpecialPoint
 
 _NONE: Final = "-"
+_ROUNDING: Final = 1e-12
 
 
 def heading(system: SystemInfo) -> str:
@@ -40,13 +41,14 @@ def special_table(diagram: Diagram) -> Table:
     table = _table("Special points")
     table.add_column("point", no_wrap=True)
     table.add_column("on", no_wrap=True)
-    for title in (_with_unit(name, system), "exact", "shift", "rad/s", "Hz", "l1"):
+    exact = ("exact", "shift") if system.realisation is not None else ()
+    for title in (_with_unit(name, system), *exact, "rad/s", "Hz", "l1"):
         table.add_column(title, justify="right", no_wrap=True)
     table.add_column("")
     for branch in diagram:
         for point in branch.special:
             if point.label not in OPERATING:
-                table.add_row(*_special_row(point, branch, name))
+                table.add_row(*_special_row(point, branch, name, exact=bool(exact)))
     return table
 
 
@@ -90,18 +92,21 @@ def _table(title: str) -> Table:
     )
 
 
-def _special_row(point: SpecialPoint, branch: Branch, name: str) -> list[str]:
-    omega = _frequency(point, branch)
-    exact = point.exact
+def _special_row(point: SpecialPoint, branch: Branch, name: str, *, exact: bool) -> list[str]:
+    omega, there = _frequency(point, branch), point.exact
+    size = float(abs(branch.parameter).max())
+    shift = [
+        _near_zero(there.parameters.get(name), size) if there else _NONE,
+        _short(there.shift.get(name)) if there else _NONE,
+    ]
     return [
         point.name,
         point.branch,
-        _fixed(point.parameters.get(name)),
-        _fixed(exact.parameters.get(name)) if exact else _NONE,
-        _short(exact.shift.get(name)) if exact else _NONE,
+        _near_zero(point.parameters.get(name), size),
+        *(shift if exact else ()),
         _fixed(omega),
         _fixed(omega / (2 * math.pi), 5),
-        _short(point.data.get("l1")),
+        _fixed(point.data.get("l1"), 4),
         str(point.data.get("criticality", point.title)),
     ]
 
@@ -119,7 +124,7 @@ def _operating_row(point: SpecialPoint, branch: Branch, name: str, shown: str) -
     if f"max {shown}" in branch.measures:
         low, high = branch.column(f"min {shown}")[k], branch.column(f"max {shown}")[k]
         value = f"{_fixed(low)} to {_fixed(high)}"
-    elif shown in branch.state_names:
+    elif shown in branch.state_names or shown in branch.measures:
         value = _fixed(float(branch.column(shown)[k]))
     else:
         value = _NONE
@@ -143,6 +148,12 @@ def _with_unit(name: str, system: SystemInfo) -> str:
 
 def _fixed(value: object, digits: int = 7) -> str:
     return f"{value:.{digits}g}" if isinstance(value, float) and math.isfinite(value) else _NONE
+
+
+def _near_zero(value: object, size: float) -> str:
+    """Return a number as `_fixed` does; 0 where it is rounding beside `size`."""
+    rounded = isinstance(value, float) and abs(value) <= _ROUNDING * size
+    return "0" if rounded else _fixed(value)
 
 
 def _short(value: object) -> str:

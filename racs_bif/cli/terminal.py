@@ -45,6 +45,27 @@ def warn(message: str) -> None:
     sys.stderr.write(f"racs-bif: {' '.join(message.split())}\n")
 
 
+def interactive(arguments: Namespace) -> bool:
+    """Tell whether progress bars are wanted: on a terminal, where no steps are printed."""
+    silent = getattr(arguments, "quiet", False) or getattr(arguments, "verbose", 0)
+    return not silent and sys.stderr.isatty()
+
+
+@contextmanager
+def working(arguments: Namespace, title: str) -> Iterator[None]:
+    """Show, on an interactive stderr, that something goes on whose end is not known."""
+    if not interactive(arguments):
+        yield
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(file=sys.stderr), transient=True) as bars:
+        bars.add_task(title, total=None)
+        yield
+
+
 @contextmanager
 def progress(arguments: Namespace) -> Iterator[Task]:
     """Show progress bars on an interactive stderr.
@@ -55,7 +76,7 @@ def progress(arguments: Namespace) -> Iterator[Task]:
         Starts a bar and returns what has to be called with every new point; None where nothing is
         to be shown.
     """
-    if arguments.quiet or not sys.stderr.isatty():
+    if not interactive(arguments):
         yield lambda _title, _span: None
         return
     from rich.console import Console

@@ -71,6 +71,11 @@ def calibrate(
     span : (float, float), optional
         Interval searched; a tenth to ten times the present value where left out.
 
+    Returns
+    -------
+    CalibrationResult
+        The value, and the Hopf point that it gives.
+
     Raises
     ------
     UsageError

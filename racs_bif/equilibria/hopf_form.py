@@ -84,11 +84,11 @@ def hopf_form(
     omega : float
         Frequency [rad/s].
     own : int
-        Number of leading states that count in |q| = 1.
+        Number of leading states that count in |q| = 1; see `VectorField.telling`.
     """
     A = linearise(field, x, p)
     q, adjoint = A.eigenvectors(omega)
-    q = q / np.sqrt(np.vdot(q[:own], q[:own]).real)
+    q = q / np.linalg.norm(field.telling(x, p, q, own))
     adjoint = adjoint / np.conj(np.vdot(adjoint, q))
     third = cubic(field, (x, p), A, omega, (q, adjoint))
     drift = A.resolve(0.0, field.f_p(x, p, dp))

@@ -46,7 +46,7 @@ def margin(matrix: Any, row: Array) -> float:  # noqa: ANN401 - either kind
     """
     full = isinstance(matrix, np.ndarray)
     square = np.vstack([matrix, row]) if full else sparse.below(matrix, row)
-    length = np.sqrt((square * square).sum(axis=1))
+    length = _lengths(square)
     if not np.all(length > 0.0):
         return 0.0
     if not full:
@@ -54,6 +54,16 @@ def margin(matrix: Any, row: Array) -> float:  # noqa: ANN401 - either kind
     square = square / length[:, None]
     sign = np.linalg.slogdet(square)[0]
     return float(sign * np.linalg.svd(square, compute_uv=False)[-1])
+
+
+def _lengths(matrix: Any) -> Array:  # noqa: ANN401 - either kind
+    """Return the lengths of the rows, whose squares may be too large for a number."""
+    largest = abs(matrix).max()
+    if not 1e-150 < largest < 1e150:
+        if largest == 0.0 or not np.isfinite(largest):
+            return np.zeros(matrix.shape[0])
+        return np.asarray(_lengths(matrix / largest) * largest)
+    return np.asarray(np.sqrt((matrix * matrix).sum(axis=1)))
 
 
 def _sparse_margin(square: Any, length: Array) -> float:  # noqa: ANN401 - as above

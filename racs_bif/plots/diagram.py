@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from racs_bif.errors import UsageError, nearest
 from racs_bif.plots.style import BLACK, BLUE, SIZE, VERMILION, style
 from racs_bif.plots.text import axis_label
 from racs_bif.results.stability import merged, stretches
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.legend import Legend
@@ -38,6 +39,7 @@ LOOKS: Final = {
 PATTERNS: Final = {"stable": "-", "unstable": (0, (3.2, 1.6)), "unknown": (0, (0.8, 1.2))}
 """Line patterns by stability."""
 MARKERS: Final = {"H": "o", "LP": "s", "BP": "D", "LPC": "s", "PD": "^", "NS": "v", "BPC": "D"}
+_FLAT: Final = 1e-9
 _OTHER: Final = "X"
 _UNMARKED: Final = frozenset({"EP", "MX"})
 
@@ -54,7 +56,8 @@ def draw(diagram: Diagram, state: str | None = None, *, ax: Axes | None = None) 
         What to draw.
     state : str, optional
         State or other quantity on the vertical axis. By default what the model suggests: the input
-        of its first fractional element, or its first state.
+        of its first fractional element, or its first state; where that is a flat line, the state
+        that varies most.
     ax : Axes, optional
         Where to draw; a new figure by default.
 
@@ -104,7 +107,9 @@ def picture(diagram: Diagram, state: str | None = None) -> Figure:
 
 
 def shown_quantity(diagram: Diagram, state: str | None = None) -> str:
-    """Return the quantity on the vertical axis.
+    """Return the quantity on the vertical axis: unless told, what the model suggests.
+
+    Where that is a flat line it is the state that varies most.
 
     Raises
     ------
@@ -114,11 +119,23 @@ def shown_quantity(diagram: Diagram, state: str | None = None) -> str:
     system = diagram.branches[0].system
     known = list(dict.fromkeys(name for branch in diagram for name in _quantities(branch)))
     if state is None:
-        return system.shown if system.shown in known else known[0]
+        suggested = next(name for name in (system.shown, *system.states, *known) if name in known)
+        ranges = {name: _range(diagram, name) for name in known if name in system.states}
+        widest = max(ranges, key=lambda name: ranges[name], default=suggested)
+        flat = ranges.get(suggested, 1.0) <= _FLAT * ranges.get(widest, 0.0)
+        return widest if flat else suggested
     if state not in known:
         msg = f"nothing called '{state}' to plot; {nearest(state, known)}"
         raise UsageError(msg)
     return state
+
+
+def _range(diagram: Diagram, name: str) -> float:
+    """Return the width of the values that a quantity has on all branches."""
+    columns = [column for branch in diagram for column in _curves(branch, name)]
+    values = np.concatenate(columns) if columns else np.zeros(1)
+    values = values[np.isfinite(values)]
+    return float(np.ptp(values)) if len(values) else 0.0
 
 
 def _quantities(branch: Branch) -> list[str]:

@@ -57,8 +57,16 @@ def style() -> Iterator[None]:
     """Draw in the project's look; matplotlib's settings are as before afterwards."""
     import matplotlib as mpl
 
-    with mpl.rc_context(_SETTINGS):  # type: ignore[arg-type]
-        yield
+    interactive = mpl.is_interactive()
+    try:
+        with mpl.rc_context(_SETTINGS):  # type: ignore[arg-type]
+            try:
+                yield
+            finally:
+                interactive = mpl.is_interactive()
+    finally:
+        # A notebook's backend turns it on when the first figure is made; forgotten, no other shows.
+        mpl.interactive(interactive)
 
 
 def save_picture(figure: Figure, path: Path) -> None:

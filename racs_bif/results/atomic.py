@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import os
+import re
 import secrets
 import shutil
+import time
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from racs_bif.errors import FileError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
+
+_PART: Final = re.compile(r"\.(.+\.)?[0-9a-f]{8}\.part(\..+)?")
+"""Names of what is being written."""
+_STALE: Final = 3600.0
+"""Seconds after which whatever was being written is a killed run's: writing takes a few."""
 
 
 def write_atomically(path: Path, write: Callable[[Path], None]) -> None:
@@ -31,13 +38,16 @@ def write_atomically(path: Path, write: Callable[[Path], None]) -> None:
         If the folder or the disk does not take the file.
     """
     part = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.part{path.suffix}")
+    _sweep(path.parent)
     try:
         write(part)
+        _flush(part)
         part.replace(path)
     except OSError as error:
         raise FileError(_cannot_write(path, error)) from error
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):  # it was not there, or nothing can be
+            part.unlink()
 
 
 def check_writable(folder: Path, names: tuple[str, ...] = ()) -> None:
@@ -78,6 +88,7 @@ def staged(folder: Path) -> Iterator[Path]:
     stage = folder / f".{secrets.token_hex(4)}.part"
     try:
         stage.mkdir(parents=True)
+        _sweep(folder)
         yield stage
         for path in sorted(stage.iterdir()):
             path.replace(folder / path.name)
@@ -105,10 +116,26 @@ def write_text(path: Path, text: str) -> None:
     def write(part: Path) -> None:
         with part.open("w", encoding="utf-8", newline="\n") as file:
             file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
 
     write_atomically(path, write)
+
+
+def _flush(path: Path) -> None:
+    """Bring a file to the disk: its new name must not get there before what is in it."""
+    with path.open("rb+") as file:
+        os.fsync(file.fileno())
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what killed runs were writing to a folder."""
+    with suppress(OSError):
+        for path in folder.iterdir():
+            if not _PART.fullmatch(path.name) or time.time() - path.stat().st_mtime < _STALE:
+                continue
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink()
 
 
 def _cannot_write(path: Path, error: OSError) -> str:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import pandas as pd
+    import xarray as xr
+    from matplotlib.axes import Axes
 
     from racs_bif.results.provenance import SystemInfo
     from racs_bif.results.special import SpecialPoint
@@ -90,8 +92,12 @@ class Branch:
         How: "shooting", ...
     profiles : dict of str to Profile
         One period of the orbit at special points, under their names.
+    samples : dict of int to Profile
+        One period of orbits along the branch, under their places among its points.
     connected : bool
         Whether it is connected to the first branch of the diagram through special points.
+    origin : object
+        The system itself, from which `at` solves for points; neither saved nor compared.
 
     Raises
     ------
@@ -117,7 +123,9 @@ class Branch:
     special: tuple[SpecialPoint, ...] = ()
     method: str = ""
     profiles: Mapping[str, Profile] = field(default_factory=dict)
+    samples: Mapping[int, Profile] = field(default_factory=dict)
     connected: bool = True
+    origin: object = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         """Bring the columns to their types and check that they fit together."""
@@ -163,6 +171,12 @@ class Branch:
             f"{self.parameters[0]} {ends}, special points: {names}>"
         )
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from racs_bif.results.shown import branch_card
+
+        return branch_card(self)
+
     @property
     def parameter(self) -> Reals:
         """The first active parameter along the branch, (npoints,)."""
@@ -199,12 +213,25 @@ class Branch:
         return columns[quantity]
 
     def at(self, **values: float) -> SpecialPoint:
-        """Return the point that was computed exactly at a value of an active parameter.
+        """Return the point at a value of an active parameter, computed exactly.
+
+        A labelled point that is there is returned. Otherwise, on a branch of equilibria, the
+        operating point is solved for.
 
         Raises
         ------
         UsageError
-            If no labelled point is there, or several are.
+            If there is no such point, or there are several.
+        ConvergenceError
+            If the point cannot be solved for.
+
+        Examples
+        --------
+        >>> import racs_bif as rb
+        >>> branch = rb.continue_equilibria(rb.load_model("racs"), "u", (5, 15))
+        >>> point = branch.at(u=12)
+        >>> round(point.state["delta_c"], 6), point.unstable
+        (-0.004621, 2)
         """
         for name in values:
             if name not in self.parameters:
@@ -212,6 +239,11 @@ class Branch:
                 raise UsageError(msg)
         where = ", ".join(f"{name}={value:g}" for name, value in values.items())
         found = [point for point in self.special if _is_at(point, values)]
+        solvable = self.kind == "equilibrium" and self.system.equations
+        if not found and solvable:
+            from racs_bif.verbs.operating_point import solve_at
+
+            return solve_at(self, float(values[self.parameters[0]]))
         if not found:
             numbers = ", ".join(f"{value:g}" for value in values.values())
             msg = (
@@ -223,6 +255,10 @@ class Branch:
             names = ", ".join(point.name for point in found)
             msg = f"{self.name} passes {where} more than once: take one of {names} by name"
             raise UsageError(msg)
+        if found[0].origin is None and solvable:
+            from racs_bif.verbs.operating_point import with_origin
+
+            return with_origin(self, found[0])
         return found[0]
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -232,6 +268,12 @@ class Branch:
         columns: dict[str, object] = dict(self._columns())
         columns |= {"stable": self.stable, "unstable": self.unstable, "label": list(self.labels)}
         return pd.DataFrame(columns)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the branch as a data set; see `racs_bif.results.arrays.branch_dataset`."""
+        from racs_bif.results.arrays import branch_dataset
+
+        return branch_dataset(self)
 
     def special_table(self) -> pd.DataFrame:
         """Return the special points as a table, a point a row, with numbers and words only."""
@@ -243,9 +285,48 @@ class Branch:
             row |= point.parameters
             if point.exact is not None:
                 row |= {f"{name} exact": value for name, value in point.exact.parameters.items()}
-            row |= {k: v for k, v in point.data.items() if not isinstance(v, np.ndarray)}
+            # A user value's data has a name too: that of what was asked for.
+            plain = {k: v for k, v in point.data.items() if not isinstance(v, np.ndarray)}
+            row = plain | row if "name" in plain else row | plain
             rows.append(row)
         return pd.DataFrame(rows)
+
+    def plot(self, state: str | None = None, *, ax: Axes | None = None) -> Axes:
+        """Draw the branch as a diagram of its own; a curve in the plane of its parameters."""
+        if self.kind == "curve":
+            from racs_bif.plots.curve import draw as draw_curve
+
+            return draw_curve([self], ax=ax)
+        from racs_bif.plots.diagram import draw
+        from racs_bif.results.diagram import Diagram
+
+        return draw(Diagram(self), state, ax=ax)
+
+    def plot_profiles(self, *names: str, state: str | None = None, ax: Axes | None = None) -> Axes:
+        """Draw one period of orbits; see `racs_bif.plots.orbit_profiles.draw_profile`."""
+        from racs_bif.plots.orbit_profiles import draw_profile
+
+        return draw_profile(self, names, state, ax=ax)
+
+    def plot_phase(
+        self, *names: str, states: tuple[str, str] | None = None, ax: Axes | None = None
+    ) -> Axes:
+        """Draw orbits in a plane; see `racs_bif.plots.orbit_profiles.draw_phase`."""
+        from racs_bif.plots.orbit_profiles import draw_phase
+
+        return draw_phase(self, names, states, ax=ax)
+
+    def plot_multipliers(self, name: str | None = None, *, ax: Axes | None = None) -> Axes:
+        """Draw multipliers along the branch, or those of one orbit with the unit circle."""
+        from racs_bif.plots.orbit_multipliers import draw_circle, draw_multipliers
+
+        return draw_multipliers(self, ax=ax) if name is None else draw_circle(self, name, ax=ax)
+
+    def plot_period(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the period along the branch; see `racs_bif.plots.orbit.draw_period`."""
+        from racs_bif.plots.orbit import draw_period
+
+        return draw_period(self, ax=ax)
 
     def _columns(self) -> dict[str, Reals]:
         columns = dict(zip(self.parameters, self.values.T, strict=True))

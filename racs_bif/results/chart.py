@@ -15,8 +15,11 @@ from racs_bif.results.same import same
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
     from matplotlib.axes import Axes
 
+    from racs_bif.results.chart_curve import ChartCurve
+    from racs_bif.results.chart_map import ChartMap
     from racs_bif.results.provenance import SystemInfo
 
 Reals = NDArray[np.float64]
@@ -63,7 +66,7 @@ class ChartBoundary:
     omega : array (m,)
         Frequency of the critical pair [rad/s], NaN but on a Hopf boundary.
     l1 : array (m,)
-        First Lyapunov coefficient [Kuznetsov: Re c1 / omega, |q| = 1], NaN where not computed.
+        First Lyapunov coefficient [Kuznetsov: Re c1 / omega], NaN where not computed.
     line : array (k, 2)
         A smooth line through the points, parameters, SI: for pictures.
     closed : bool
@@ -131,35 +134,6 @@ class ChartRegion:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ChartMap:
-    """A map over the plane, (n1, n2) cells, each computed at its middle.
-
-    Parameters
-    ----------
-    quantity : {"count", "damping"}
-        What was asked for.
-    unstable : int8 array (n1, n2)
-        Number of unstable roots; -1 where they could not be counted, -2 without an equilibrium.
-    sigma, omega : array (n1, n2)
-        Rightmost root, 1/s and rad/s; NaN where it is not certain, and for a map of counts.
-    evaluations : int
-        Determinants that it took.
-    """
-
-    quantity: str
-    unstable: NDArray[np.int8]
-    sigma: Reals
-    omega: Reals
-    evaluations: int
-
-    def __eq__(self, other: object) -> bool:
-        """Compare bit by bit."""
-        return same(self, other) if isinstance(other, ChartMap) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Chart:
     """A stability chart of a plane of two parameters.
 
@@ -181,6 +155,12 @@ class Chart:
         What it was computed from; its parameters hold besides the two.
     map : ChartMap, optional
         A map that was asked for.
+    curves : tuple of ChartCurve
+        Curves of other points over it, such as folds of cycles.
+    operator : {"exact", "realised"}
+        Whose characteristic roots.
+    depth : int
+        The search divided cells that might hide a boundary down to a ``2**-depth``-th of a span.
     unexplained : int
         Places between neighbouring nodes where counts differ for no boundary that was found.
     torn : int
@@ -203,6 +183,9 @@ class Chart:
     node_counts: NDArray[np.int64]
     system: SystemInfo
     map: ChartMap | None = None
+    curves: tuple[ChartCurve, ...] = ()
+    operator: str = "exact"
+    depth: int = 0
     unexplained: int = 0
     torn: int = 0
     evaluations: int = 0
@@ -224,6 +207,12 @@ class Chart:
             f"{len(self.boundaries)} boundaries, unstable roots by region: {numbers}>"
         )
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from racs_bif.results.shown import chart_card
+
+        return chart_card(self)
+
     @property
     def early(self) -> bool:
         """Whether something that was looked for may be missing."""
@@ -234,12 +223,32 @@ class Chart:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What is to be known about a chart in which nothing went wrong."""
-        if not self.torn:
-            return ()
-        return (
-            "More than one equilibrium is continued over part of the plane, between its folds; the "
-            "counts there are those of one of them.",
-        )
+        told = []
+        if self.torn:
+            told.append(
+                "More than one equilibrium is continued over part of the plane, between its folds; "
+                "the counts there are those of one of them."
+            )
+        if self.depth:
+            cell = f"1/{2**self.depth} of a span"
+            found = self.smallest_island
+            size = "" if found is None else f"; the smallest found is {found:.2g} of a span across"
+            told.append(
+                f"An island smaller than {cell} may be missed where nothing points to it{size}. A "
+                "greater depth searches more finely."
+            )
+        return tuple(told)
+
+    @property
+    def smallest_island(self) -> float | None:
+        """Greatest extent of the smallest closed boundary, in spans; None where none is closed."""
+        width = np.diff(np.array(self.spans), axis=1)[:, 0]
+        sizes = [
+            float((np.ptp(boundary.line, axis=0) / width).max())
+            for boundary in self.boundaries
+            if boundary.closed
+        ]
+        return min(sizes) if sizes else None
 
     @property
     def nominal(self) -> Reals | None:
@@ -310,6 +319,12 @@ class Chart:
             tables.append(pd.DataFrame(columns))
         names = ["boundary", "kind", *self.parameters, "omega", "l1"]
         return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=names)
+
+    def to_xarray(self, shape: tuple[int, int] = (200, 200)) -> xr.Dataset:
+        """Return the plane as a data set; see `racs_bif.results.arrays.chart_dataset`."""
+        from racs_bif.results.arrays import chart_dataset
+
+        return chart_dataset(self, shape)
 
     def plot(self, *, ax: Axes | None = None) -> Axes:
         """Draw the chart; see `racs_bif.plots.chart.draw`."""

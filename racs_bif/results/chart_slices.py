@@ -10,6 +10,8 @@ from racs_bif.results.same import same
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import pandas as pd
+    import xarray as xr
     from matplotlib.figure import Figure
 
     from racs_bif.results.chart import Chart
@@ -53,6 +55,26 @@ class ChartSlices:
     def early(self) -> bool:
         """Whether something that was looked for may be missing in one of them."""
         return any(chart.early for chart in self.charts)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the boundaries of all slices as one table, a point a row."""
+        import pandas as pd
+
+        tables = [
+            chart.to_dataframe().assign(**{self.parameter: value})
+            for chart, value in zip(self.charts, self.values, strict=True)
+        ]
+        return pd.concat(tables, ignore_index=True)
+
+    def to_xarray(self, shape: tuple[int, int] = (200, 200)) -> xr.Dataset:
+        """Return the planes as one data set, the third parameter its last dimension."""
+        import xarray as xr
+
+        unit = self.charts[0].system.unit(self.parameter)
+        third = xr.DataArray(list(self.values), dims=self.parameter, attrs={"units": unit})
+        planes = [chart.to_xarray(shape) for chart in self.charts]
+        whole: xr.Dataset = xr.concat(planes, dim=third.assign_coords({self.parameter: third}))
+        return whole.transpose(..., self.parameter)
 
     def plot(self) -> Figure:
         """Draw all on one figure; see `racs_bif.plots.chart.picture_slices`."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from racs_bif.results.chart import ChartBoundary, ChartRegion, Reals
+    from racs_bif.results.chart_map import ChartMap
     from racs_bif.results.summary import Json
 
 GRID: Final = 200
@@ -45,7 +46,7 @@ def summarise_chart(
         "parameters": dict(system.parameters),
         "units": dict(system.units),
         "realisation": None,
-        "operator": "exact",
+        "operator": chart.operator,
         "notes": list(system.notes),
         "plane": list(chart.parameters),
         "spans": dict(zip(chart.parameters, map(list, chart.spans), strict=True)),
@@ -71,17 +72,44 @@ def _chart(chart: Chart) -> dict[str, object]:
             "seconds": chart.seconds,
             "grid": {"cells": [GRID, GRID], "evaluations": grid},
         },
+        "search": {"depth": chart.depth, "smallest_island": chart.smallest_island},
+        "curves": [
+            {
+                "kind": curve.kind,
+                "name": curve.name,
+                "stopped": curve.stopped,
+                "points": [{"parameters": _named(chart, values)} for values in curve.values],
+            }
+            for curve in chart.curves
+        ],
         "unexplained": chart.unexplained,
         "troubles": list(chart.troubles),
         "remarks": list(chart.remarks),
         "map": None,
     }
     if chart.map is not None:
-        told["map"] = {
-            "quantity": chart.map.quantity,
-            "cells": list(chart.map.unstable.shape),
-            "unknown": int((chart.map.unstable < 0).sum()),
-            "evaluations": chart.map.evaluations,
+        told["map"] = _map(chart.map)
+    return told
+
+
+def _map(found: ChartMap) -> dict[str, object]:
+    told: dict[str, object] = {
+        "quantity": found.quantity,
+        "cells": list(found.unstable.shape),
+        "unknown": found.unknown,
+        "evaluations": found.evaluations,
+    }
+    sweep = found.sweep
+    if sweep is not None:
+        known = sweep.value[np.isfinite(sweep.value)]
+        told |= {
+            "watch": sweep.watch,
+            "duration": sweep.duration,
+            "tolerance": sweep.tolerance,
+            "start": dict(sweep.start),
+            "status": sweep.tally,
+            "least": float(known.min()) if len(known) else None,
+            "greatest": float(known.max()) if len(known) else None,
         }
     return told
 

@@ -10,9 +10,10 @@ from racs_bif.results.chart import (
     BoundaryPoint,
     Chart,
     ChartBoundary,
-    ChartMap,
     ChartRegion,
 )
+from racs_bif.results.chart_curve import ChartCurve
+from racs_bif.results.chart_map_tree import decode_map, encode_map
 from racs_bif.results.chart_slices import ChartSlices
 from racs_bif.results.decode import decode_system
 from racs_bif.results.encode import encode_system
@@ -60,6 +61,9 @@ def encode_chart(chart: Chart) -> Node:
             "per_count": chart.per_count,
             "boundaries": len(chart.boundaries),
             "regions": len(chart.regions),
+            "operator": chart.operator,
+            "depth": chart.depth,
+            "curves": len(chart.curves),
         }
     )
     if chart.troubles:
@@ -74,7 +78,14 @@ def encode_chart(chart: Chart) -> Node:
     for k, region in enumerate(chart.regions):
         node.groups[f"region{k + 1}"] = _encode_region(chart, region)
     if chart.map is not None:
-        node.groups["map"] = _encode_map(chart, chart.map)
+        node.groups["map"] = encode_map(chart, chart.map)
+    for k, curve in enumerate(chart.curves):
+        told: dict[str, Attribute] = {
+            "kind": curve.kind,
+            "name": curve.name,
+            "stopped": curve.stopped,
+        }
+        node.groups[f"curve{k + 1}"] = Node(told, _places(chart, _POINT, curve.values))
     return node
 
 
@@ -95,7 +106,13 @@ def decode_chart(node: Node) -> Chart:
         node_values=_values(node, "node"),
         node_counts=node.variables["node_unstable"].data.astype(np.int64),
         system=decode_system(node.groups["system"]),
-        map=_decode_map(node.groups["map"]) if "map" in node.groups else None,
+        map=decode_map(node.groups["map"]) if "map" in node.groups else None,
+        curves=tuple(
+            _decode_curve(node.groups[f"curve{k + 1}"])
+            for k in range(int(str(node.attributes.get("curves", 0))))
+        ),
+        operator=str(node.attributes.get("operator", "exact")),
+        depth=int(str(node.attributes.get("depth", 0))),
         unexplained=_whole(node, "unexplained"),
         torn=_whole(node, "torn"),
         evaluations=_whole(node, "evaluations"),
@@ -182,33 +199,12 @@ def _decode_region(node: Node) -> ChartRegion:
     )
 
 
-def _encode_map(chart: Chart, chart_map: ChartMap) -> Node:
-    node = Node({"quantity": chart_map.quantity, "evaluations": chart_map.evaluations})
-    for axis, name, span, n in zip(
-        _AXES, chart.parameters, chart.spans, chart_map.unstable.shape, strict=True
-    ):
-        middles = span[0] + (np.arange(n) + 0.5) / n * (span[1] - span[0])
-        about: dict[str, Attribute] = {"long_name": name, "units": chart.system.unit(name)}
-        node.variables[axis] = Variable((axis,), middles, about)
-    node.variables["unstable"] = Variable(
-        _AXES, chart_map.unstable, {"long_name": "number of unstable roots; -1 unknown, -2 none"}
-    )
-    if chart_map.quantity == "damping":
-        node.variables["sigma"] = Variable(_AXES, chart_map.sigma, {"units": "1/s"})
-        node.variables["omega"] = Variable(_AXES, chart_map.omega, {"units": "rad/s"})
-    return node
-
-
-def _decode_map(node: Node) -> ChartMap:
-    unstable = node.variables["unstable"].data.astype(np.int8)
-    nothing = np.full(unstable.shape, np.nan)
-    known = node.variables
-    return ChartMap(
-        quantity=str(node.attributes["quantity"]),
-        unstable=unstable,
-        sigma=real_array(known["sigma"]) if "sigma" in known else nothing,
-        omega=real_array(known["omega"]) if "omega" in known else nothing.copy(),
-        evaluations=_whole(node, "evaluations"),
+def _decode_curve(node: Node) -> ChartCurve:
+    return ChartCurve(
+        kind=str(node.attributes["kind"]),
+        name=str(node.attributes["name"]),
+        values=_values(node, _POINT),
+        stopped=str(node.attributes["stopped"]),
     )
 
 

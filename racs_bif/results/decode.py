@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from operator import itemgetter
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from racs_bif.results.branch import Branch, Profile
 from racs_bif.results.encode import DATA, EIGENVALUES, SETTING, SPECTRA, TIME
 from racs_bif.results.provenance import RealisationInfo, SystemInfo
+from racs_bif.results.saved import Saved
 from racs_bif.results.special import ExactPoint, SpecialPoint, Value
 from racs_bif.results.tree import (
     Node,
@@ -30,7 +32,8 @@ def decode_branch(node: Node) -> Branch:
     measure_names, measures = _columns(node, "measure", count)
     special = node.groups.get("special_points", Node())
     profiles = node.groups.get("profiles", Node())
-    return Branch(
+    samples = node.groups.get("samples", Node())
+    branch = Branch(
         name=str(node.attributes["name"]),
         kind=kind,
         parameters=parameters,
@@ -50,6 +53,14 @@ def decode_branch(node: Node) -> Branch:
         special=tuple(_decode_special(special.groups[name]) for name in _order(special)),
         method=str(node.attributes["method"]),
         profiles={name: _decode_profile(profiles.groups[name]) for name in _order(profiles)},
+        samples={int(k): _decode_profile(samples.groups[k]) for k in _order(samples)},
+    )
+    if not branch.profiles:
+        return branch
+    # an orbit can be found again from its profile
+    origins = {name: Saved(branch, name) for name in branch.profiles}
+    return replace(
+        branch, special=tuple(replace(p, origin=origins.get(p.name)) for p in branch.special)
     )
 
 

@@ -11,6 +11,7 @@ from racs_bif.results.same import same
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    import pandas as pd
     from matplotlib.axes import Axes
 
     from racs_bif.results.branch import Branch
@@ -85,6 +86,12 @@ class Diagram:
         """Return a line for each branch."""
         return "\n".join(map(repr, self.branches))
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from racs_bif.results.shown import diagram_card
+
+        return diagram_card(self)
+
     @property
     def special_points(self) -> tuple[SpecialPoint, ...]:
         """The special points of all branches."""
@@ -94,6 +101,20 @@ class Diagram:
     def early(self) -> bool:
         """True if a branch ended before it had what was asked for."""
         return any(branch.early for branch in self.branches)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return all branches as one table, a point a row, named in the column ``branch``."""
+        import pandas as pd
+
+        tables = [branch.to_dataframe().assign(branch=branch.name) for branch in self]
+        return pd.concat(tables, ignore_index=True)
+
+    def special_table(self) -> pd.DataFrame:
+        """Return all special points as a table, a point a row."""
+        import pandas as pd
+
+        tables = [branch.special_table().assign(branch=branch.name) for branch in self]
+        return pd.concat(tables, ignore_index=True)
 
     def plot(self, state: str | None = None, *, ax: Axes | None = None) -> Axes:
         """Draw the diagram; see `racs_bif.plots.diagram.draw`."""

@@ -70,6 +70,9 @@ def encode_branch(branch: Branch) -> Node:
     profiles = {name: _encode_profile(p, branch.system) for name, p in branch.profiles.items()}
     if profiles:
         node.groups["profiles"] = Node({"order": tuple(profiles)}, groups=profiles)
+    samples = {str(k): _encode_profile(p, branch.system) for k, p in branch.samples.items()}
+    if samples:
+        node.groups["samples"] = Node({"order": tuple(samples)}, groups=samples)
     return node
 
 

@@ -65,6 +65,16 @@ def save(result: Result, path: str | Path) -> Path:
 def load(path: str | Path) -> Result:
     """Load what `save` saved, bit for bit.
 
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Branch, Diagram, TimeHistory, Chart or ChartSlices
+        Equal to what was saved. A branch that was saved alone comes back as one.
+
     Raises
     ------
     FileError
@@ -87,6 +97,17 @@ def load(path: str | Path) -> Result:
     if checksum != fingerprint(node):
         msg = f"'{path}' was changed after it was saved: its checksum is wrong; compute it again"
         raise FileError(msg)
+    try:
+        return _decode(node)
+    except (KeyError, ValueError, TypeError, IndexError, AttributeError) as error:
+        msg = (
+            f"'{path}' lacks what its kind of result has: {error}; it was not saved by save(), "
+            "compute it again"
+        )
+        raise FileError(" ".join(msg.split())) from error
+
+
+def _decode(node: Node) -> Result:
     if node.attributes["content"] == GROUP:
         return decode_history(node.groups[GROUP])
     if node.attributes["content"] in {CHART, SLICES}:
@@ -132,11 +153,14 @@ def _about(version: str) -> dict[str, Attribute]:
 
 def _read(path: Path) -> Node:
     if not path.exists():
-        msg = f"there is no file '{path}'"
+        msg = f"there is no file '{path}'; check its name and folder"
         raise FileError(msg)
     try:
         return read_tree(path)
     # h5py raises these, whichever it runs into first, for a file that is not HDF5 or lacks a part.
     except (OSError, RuntimeError, KeyError, ValueError, AttributeError, TypeError) as error:
-        msg = f"'{path}' cannot be read: it is damaged, incomplete or not netCDF-4; {error}"
+        msg = (
+            f"'{path}' cannot be read: it is damaged, incomplete or not netCDF-4 ({error}); "
+            "compute it again"
+        )
         raise FileError(" ".join(msg.split())) from error

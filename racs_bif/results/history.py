@@ -14,6 +14,7 @@ from racs_bif.results.same import same
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
     from matplotlib.axes import Axes
 
     from racs_bif.results.provenance import SystemInfo
@@ -109,6 +110,12 @@ class TimeHistory:
             f"{self.operator} operator by {self.method}, history {self.history}>"
         )
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from racs_bif.results.shown import history_card
+
+        return history_card(self)
+
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all columns: states, outputs, inputs."""
@@ -176,6 +183,12 @@ class TimeHistory:
         import pandas as pd
 
         return pd.DataFrame(self._columns(), index=pd.Index(self.times, name="time"))
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the history as a data set over the dimension ``time``, with units."""
+        from racs_bif.results.arrays import history_dataset
+
+        return history_dataset(self)
 
     def plot(self, *names: str, ax: Axes | None = None) -> Axes:
         """Draw one column, or several, against time.

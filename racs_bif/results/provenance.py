@@ -46,7 +46,8 @@ class SystemInfo:
     model, title, variant : str
         Which model.
     states : tuple of str
-        The model's own states, without those of a realisation.
+        The model's own states, without those of a realisation; the outputs of its elements where it
+        is made of elements only.
     parameters : dict of str to float
         Every parameter, derived ones too, where it is not an active one; SI.
     units : dict of str to str
@@ -97,7 +98,7 @@ def describe(system: System) -> SystemInfo:
         model=system.name,
         title=system.title,
         variant=system.variant,
-        states=tuple(system.states),
+        states=tuple(system.own),
         parameters=dict(system.parameters),
         units=system.state_units | {p.name: p.unit for p in system.parameter_table},
         shown=inputs[0] if inputs else "",
@@ -130,4 +131,7 @@ def equations_digest(system: System) -> str:
     told = {key: meta[key] for key in ("states", "equations", "mass", "elements")}
     told["parameters"] = [p["name"] for p in meta["parameters"]]
     told["derived"] = [(d["name"], d["expression"], d["sets"]) for d in meta["derived"]]
+    for key in ("terms", "external"):  # left out where there are none, as before there were any
+        if meta[key]:
+            told[key] = meta[key]
     return hashlib.sha256(repr(told).encode()).hexdigest()

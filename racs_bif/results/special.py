@@ -108,6 +108,12 @@ class SpecialPoint:
             raise AttributeError(msg)
         return self.data[name]
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        from racs_bif.results.shown import point_card
+
+        return point_card(self)
+
     @property
     def title(self) -> str:
         """The kind of point in words."""

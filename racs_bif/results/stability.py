@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from racs_bif.results.branch import Branch
 
 _UNKNOWN = -1
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,23 @@ def describe_stability(branch: Branch) -> str:
     parts = [(values[part.first], values[part.last], part) for part in stretches(branch)]
     if len(branch) and values[-1] < values[0]:
         parts = [(end, start, part) for start, end, part in reversed(parts)]
+    tiny = _ROUNDING * float(abs(values).max(initial=0.0))
+    ends = [[0.0 if abs(end) <= tiny else float(end) for end in part[:2]] for part in parts]
+    digits = _digits(ends)
     words = []
-    for start, end, part in parts:
+    for (start, end), (_, _, part) in zip(ends, parts, strict=True):
         count = f" ({part.unstable})" if part.kind == "unstable" else ""
-        words.append(f"{part.kind}{count} {start:.5g} to {end:.5g}")
+        words.append(f"{part.kind}{count} {start:.{digits}g} to {end:.{digits}g}")
     return ", ".join(words)
+
+
+def _digits(ends: list[list[float]]) -> int:
+    """Return how many digits it takes to tell the ends of every stretch apart, at least five."""
+    for digits in range(5, 17):
+        told = [(f"{start:.{digits}g}", f"{end:.{digits}g}", start == end) for start, end in ends]
+        if all(first != last or same for first, last, same in told):
+            return digits
+    return 17
 
 
 def _between(branch: Branch, k: int) -> int:

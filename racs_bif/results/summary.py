@@ -210,7 +210,8 @@ def _operating(branch: Branch, k: int) -> dict[str, object]:
 
 def _equilibrium(branch: Branch, k: int) -> dict[str, object]:
     own = branch.system.states or branch.state_names
-    state = dict(zip(branch.state_names, branch.states[k].tolist(), strict=True))
+    state = {name: float(column[k]) for name, column in branch.measures.items()}
+    state |= zip(branch.state_names, branch.states[k].tolist(), strict=True)
     return {
         "state": {name: value for name, value in state.items() if name in own},
         "eigenvalues": _spectrum(branch, k),

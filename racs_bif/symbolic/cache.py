@@ -14,10 +14,14 @@ import os
 import platform
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 _LOG = logging.getLogger(__name__)
 _HEADER = "# sha256 "
+_WRITING = ".writing-"
+_STALE = 3600.0
+"""Seconds after which an entry that is being written is a killed run's."""
 
 
 def folder() -> Path:
@@ -85,12 +89,23 @@ def write(name: str, body: str) -> None:
     try:
         target = folder() / name
         target.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".writing-")
+        _sweep(target.parent)
+        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=_WRITING)
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
             stream.write(text)
         os.replace(temporary, target)  # noqa: PTH105 - the two paths are strings already
+        temporary = None
     except (OSError, RuntimeError) as error:
         _LOG.info("cache entry %s was not written: %s", name, error)
+    finally:  # also when the user interrupts
         if temporary is not None:
             with contextlib.suppress(OSError):
                 os.unlink(temporary)  # noqa: PTH108 - as above
+
+
+def _sweep(place: Path) -> None:
+    """Remove what killed runs were writing."""
+    for path in place.glob(f"{_WRITING}*"):
+        with contextlib.suppress(OSError):  # another run was faster, or may not be disturbed
+            if time.time() - path.stat().st_mtime > _STALE:
+                path.unlink()

@@ -74,7 +74,7 @@ class VectorField(ABC):
         return None
 
     stateless: bool = False
-    """Whether the model has no states of its own, so that outputs of its elements stand for them."""
+    """Whether the model has no states of its own: outputs of its elements stand for them."""
 
     def own_outputs(self, x: Array, p: Array) -> dict[str, Array]:
         """Return what stands for states at N points x (n, N), each (N,), by name; by default none.

@@ -139,7 +139,11 @@ def test_contradictory_backends(options, message):
 
 @pytest.mark.parametrize(
     ("shape", "quantity", "message"),
-    [((0, 5), "count", "at least one cell"), ((5, 5), "amplitude", "unknown map 'amplitude'")],
+    [
+        ((0, 5), "count", "at least one cell"),
+        ((5, 5), "colour", "unknown map 'colour'"),
+        ((5, 5), "amplitude", "needs simulations"),
+    ],
 )
 def test_maps_that_there_are_not(lattice, shape, quantity, message):
     with pytest.raises(UsageError, match=message):

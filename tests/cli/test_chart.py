@@ -131,7 +131,7 @@ def test_a_run_that_was_killed_goes_on_and_gives_the_same_file(chart, model, tmp
 def test_ctrl_c_says_how_to_go_on(chart, monkeypatch, tmp_path):
     from racs_bif.charts import backends
 
-    compute, done = backends.compute_tile, []
+    compute, done = backends.compute, []
 
     def interrupted(job, index):
         if done:
@@ -139,12 +139,46 @@ def test_ctrl_c_says_how_to_go_on(chart, monkeypatch, tmp_path):
         done.append(index)
         return compute(job, index)
 
-    monkeypatch.setattr(backends, "compute_tile", interrupted)
+    monkeypatch.setattr(backends, "compute", interrupted)
     told = chart(*BOX, "--map", "count", "--cells", "70", "20")
     assert told.status == 1
     assert "--resume goes on" in told.err
     monkeypatch.undo()
     assert chart(*BOX, "--map", "count", "--cells", "70", "20", "--resume").status == 0
+
+
+def test_a_map_by_simulation_says_what_is_known(chart, tmp_path):
+    options = (*BOX, "--map", "amplitude", "--cells", "4", "3", "--duration", "30")
+    told = chart(*options, "--start", "x=0.1", "--start", "v=0", "--watch", "v", "--json")
+    assert told.status == 0
+    found = json.loads(told.out)["map"]
+    assert found["quantity"] == "amplitude"
+    assert (found["watch"], found["duration"]) == ("v", 30.0)
+    assert found["start"] == {"x": 0.1, "v": 0.0}
+    assert sum(found["status"].values()) == 12
+    assert found["unknown"] == 12 - found["status"]["certain"]
+    assert found["status"]["failed"] + found["status"]["not settled"] > 0
+    assert load(tmp_path / "out" / "chart.nc").map.sweep.status.shape == (4, 3)
+    assert "Map of amplitude of x, 4 x 3 cells, 30 s each" in chart(*options).out
+
+
+def test_the_realised_operator_and_a_curve_over_it(cli, model, chart, tmp_path):
+    span = ("--span", "a", "0.1", "2", "--span", "b", "-0.6", "0.6")
+    curve = ("curve", "hopf", "a", "b", "--model", model, "--out", tmp_path / "curve")
+    assert cli(*curve, *span).status == 0
+    saved = tmp_path / "curve" / "branches.nc"
+    told = chart(*BOX, "--operator", "realised", "--curve", saved, "--json")
+    assert told.status == 0
+    summary = json.loads(told.out)
+    assert summary["operator"] == "realised"
+    assert summary["search"]["depth"] == 4
+    assert summary["search"]["smallest_island"] == pytest.approx(0.5, abs=1e-3)
+    (over,) = summary["curves"]
+    for point in over["points"]:
+        assert math.hypot(*point["parameters"].values()) == pytest.approx(1.0, abs=1e-6)
+    wrong = chart(*BOX, "--curve", tmp_path / "out" / "chart.nc", out="other")
+    assert wrong.status == 2
+    assert "holds no curve in a and b" in wrong.err
 
 
 @pytest.mark.parametrize(
@@ -157,8 +191,13 @@ def test_ctrl_c_says_how_to_go_on(chart, monkeypatch, tmp_path):
         (("a", "b"), (*BOX[:4], "--span", "b", "0", "9"), "leaves the model's validity"),
         (("a", "bb"), BOX[:4], "unknown parameter 'bb'"),
         (("a", "b"), (*BOX, "--resume"), "give --map"),
-        (("a", "b"), (*BOX, "--workers", "2"), "give --map"),
-        (("a", "b"), (*BOX, "--map", "amplitude"), "unknown 'amplitude'"),
+        (("a", "b"), (*BOX, "--workers", "2"), "give --map or --slices"),
+        (("a", "b"), (*BOX, "--map", "colour"), "unknown 'colour'"),
+        (("a", "b"), (*BOX, "--map", "damping", "--duration", "3"), "--duration is for simul"),
+        (("a", "b"), (*BOX, "--map", "damping", "--start", "x=1"), "--start is for simulations"),
+        (("a", "b"), (*BOX, "--cells", "3", "3"), "--cells is for a map"),
+        (("a", "b"), (*BOX, "--map", "periods", "--watch", "q"), "unknown state 'q'"),
+        (("a", "b"), (*BOX, "--curve", "none.nc"), "there is no file 'none.nc'"),
         (("a", "b"), (*BOX, "--slices", "r"), "is not NAME=V1,V2"),
         (("a", "b"), (*BOX, "--slices", "a=1,2"), "slice along another parameter"),
         (("a", "b"), (*BOX, "--mark", "r=1"), "at values of a or b"),

@@ -64,7 +64,7 @@ def test_what_is_told_fits_80_columns(cli, complete, out):
     assert "Note: the sign in print is inconsistent" in text
     hopf = next(line for line in lines if line.startswith("H1")).split()
     assert hopf[:4] == ["H1", "EQ1", "10", "10.001"]
-    assert hopf[4:] == ["-1.0e-04", "9.5", "1.512", "-1.2e+00", "supercritical"]
+    assert hopf[4:] == ["-1.0e-04", "9.5", "1.512", "-1.25", "supercritical"]
 
 
 def test_a_branch_that_ends_early_is_saved_and_told(cli, computed, out):
@@ -134,14 +134,16 @@ def test_arguments_reach_the_computation(cli, computed, known, out):
         seen["equilibria"] = (parameter, span, at, probes, progress)
         return known.equilibria()
 
-    def orbits(point, span, *, method, at, progress):
+    def orbits(point, span, *, method, at, known, progress):
         seen["orbits"] = (point.name, span, method, at, progress)
+        seen["known"] = [branch.name for branch in known]
         return known.orbits()
 
     computed.equilibria, computed.orbits = equilibria, orbits
     cli(*RUN, "--at", "12", "18", "--at", "20", "--probes", "3", "--out", out)
     assert seen["equilibria"] == ("u", (5.0, 30.0), (12.0, 18.0, 20.0), 3, None)
     assert seen["orbits"] == ("H1", (5.0, 30.0), "shooting", (12.0, 18.0, 20.0), None)
+    assert seen["known"] == ["EQ1"]
 
 
 def test_json_is_the_summary_alone(cli, complete, out):

@@ -37,3 +37,17 @@ def test_normal_form_predicts_the_bent_circle_to_third_order(bent_hopf):
     ]
     orders = np.log2(np.divide(residuals[:-1], residuals[1:]))
     assert np.all(orders > 2.8), (residuals, orders)
+
+
+@pytest.mark.parametrize("k", [1, 2])
+def test_orbits_that_break_a_symmetry_are_left_with_natural_steps(k):
+    """The middle cell of an odd mode is at rest to first order: it moves by its square."""
+    import racs_bif as rb
+
+    system = rb.load_model("brusselator_chain", variant="5", parameters={"D_x": 0.5, "D_y": 0.5})
+    points = rb.continue_equilibria(system, "B", (1.5, 3.5)).special
+    hopf = [point for point in points if point.label == "H"][k]
+    low, high = 1.5, hopf.parameters["B"] + 0.1
+    branch = rb.continue_orbits(hopf, span=(low, high), method="collocation")
+    assert branch.parameter[-1] == pytest.approx(high)
+    assert len(branch) < 40

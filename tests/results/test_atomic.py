@@ -1,3 +1,6 @@
+import os
+import time
+
 import pytest
 
 from racs_bif.errors import FileError
@@ -78,3 +81,25 @@ def test_a_file_in_the_way_is_found_before_computing(tmp_path):
     (tmp_path / "dangling").symlink_to(tmp_path / "gone")
     with pytest.raises(FileError, match="cannot write"):
         check_writable(tmp_path / "dangling")
+
+
+@pytest.mark.parametrize("name", [".0123abcd.part", ".branches.0123abcd.part.nc"])
+def test_what_a_killed_run_was_writing_is_swept_away_when_it_is_old(tmp_path, name):
+    for age, folder in ((0.0, tmp_path / "new"), (7200.0, tmp_path / "old")):
+        left = folder / name
+        if name.endswith(".nc"):
+            folder.mkdir()
+            left.write_text("half")
+        else:
+            left.mkdir(parents=True)
+            (left / "branches.nc").write_text("half")
+        (folder / ".hidden.part").write_text("the user's")
+        for path in folder.iterdir():
+            os.utime(path, (time.time() - age,) * 2)
+        write_text(folder / "a.txt", "a")
+        with staged(folder) as stage:
+            write_text(stage / "b.txt", "b")
+    swept = [".hidden.part", "a.txt", "b.txt"]
+    assert _everything(tmp_path / "old") == swept
+    kept = sorted(p.name for p in (tmp_path / "new").iterdir())
+    assert kept == sorted([name, *swept])  # another run may still be writing it

@@ -27,6 +27,14 @@ def test_stability_is_told_from_the_lower_end(branch):
     assert describe_stability(backward) == describe_stability(branch)
 
 
+def test_ends_that_nearly_coincide_are_told_apart_and_rounding_is_zero(branch):
+    short = replace(branch, values=7.922 + 1e-7 * (branch.values - 5.0), special=())
+    told = "stable 7.922 to 7.9220005, unstable (2) 7.9220005 to 7.9220025"
+    assert describe_stability(short) == told
+    about = replace(branch, values=branch.values - 10.0 + 1e-15, special=())
+    assert describe_stability(about) == "stable -5 to 0, unstable (2) 0 to 20"
+
+
 @pytest.mark.parametrize("own", [0, 1, 2])
 def test_what_the_special_point_itself_has_does_not_matter(branch, own):
     unstable = branch.unstable.copy()

@@ -1,8 +1,10 @@
 """The cache is trusted when it is whole, rebuilt when it is not, and never needed."""
 
+import errno
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -163,6 +165,7 @@ def test_folder_follows_the_environment(tmp_path, monkeypatch):
 
 WRITER = """
 import sys
+import time
 from racs_bif.symbolic import cache
 body = sys.argv[1] * 100_000
 for _ in range(150):
@@ -215,3 +218,107 @@ def test_the_text_does_not_depend_on_the_hash_seed(folder):
         )  # fmt: skip
         digests.add(done.stdout)
     assert len(digests) == 1
+
+
+
+@pytest.mark.parametrize("where", ["mkstemp", "fdopen", "replace", "mkdir"])
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EDQUOT])
+def test_a_full_disk_or_read_only_home_costs_speed_only(folder, builds, monkeypatch, where, number):
+    def fail(*_args, **_kwargs):
+        raise OSError(number, os.strerror(number))
+
+    if where != "mkdir":
+        folder.mkdir()
+    home = {"mkstemp": cache.tempfile, "fdopen": os, "replace": os, "mkdir": Path}[where]
+    with monkeypatch.context() as patch:
+        patch.setattr(home, where, fail)
+        for _ in range(2):
+            assert value(compile_model(decay())) == -6.0
+    assert len(builds) == 2
+    assert not folder.exists() or list(folder.iterdir()) == []
+    for _ in range(2):  # and when there is room again, it is used
+        assert value(compile_model(decay())) == -6.0
+    assert len(builds) == 3
+
+
+def test_a_disk_that_fills_up_in_the_middle_of_an_entry(folder):
+    """The kernel itself refuses the rest: what was there stays, and nothing lies about."""
+    cache.write("entry", "old")
+    script = """
+import resource
+from racs_bif.symbolic import cache
+resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))
+cache.write("entry", "new" * 100_000)
+cache.write("small", "fits")
+"""
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    subprocess.run([sys.executable, "-c", script], env=environment, check=True)
+    assert cache.read("entry") == "old"
+    assert cache.read("small") == "fits"
+    assert sorted(p.name for p in folder.iterdir()) == ["entry", "small"]
+
+
+def test_an_interrupted_writer_leaves_nothing(folder, monkeypatch):
+    def interrupt(*_args):
+        raise KeyboardInterrupt
+
+    cache.write("entry", "old")
+    monkeypatch.setattr(os, "replace", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        cache.write("entry", "new")
+    assert cache.read("entry") == "old"
+    assert [p.name for p in folder.iterdir()] == ["entry"]
+
+
+def test_a_killed_writer_leaves_whole_entries(folder):
+    """What it was writing lies about, does no harm, and is swept away when it is old."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    endless = WRITER.replace("range(150)", "iter(int, 1)")
+    bodies = {letter * 100_000 for letter in "ab"}
+    for letter, pause in (("a", 0.0), ("b", 0.013), ("a", 0.029)):
+        before = cache.read("entry")
+        writer = subprocess.Popen([sys.executable, "-c", endless, letter], env=environment)
+        while cache.read("entry") in (None, before) and writer.poll() is None:
+            time.sleep(0.001)
+        time.sleep(pause)
+        writer.kill()
+        writer.wait()
+        assert cache.read("entry") in bodies
+    for k, age in enumerate((0.0, 7200.0)):
+        left = folder / f".writing-{k}"
+        left.write_text("half")
+        os.utime(left, (time.time() - age,) * 2)
+    assert value(compile_model(decay())) == -6.0
+    assert (folder / ".writing-0").exists()  # another process may still be writing it
+    assert not (folder / ".writing-1").exists()
+
+
+COMPILER = """
+import sys
+import time
+import numpy as np
+from racs_bif.symbolic.compiled import compile_model
+from racs_bif.symbolic.strings import model_from_strings
+sys.stdin.readline()
+model = model_from_strings("decay", {"x": "-k*x"}, parameters={"k": 2.0})
+print(compile_model(model).core(np.array([3.0]), np.array([2.0]))[0])
+"""
+
+
+def test_two_processes_compiling_the_same_model_at_once(folder):
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    runs = [
+        subprocess.Popen(
+            [sys.executable, "-c", COMPILER],
+            env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        )
+        for _ in range(2)
+    ]  # fmt: skip
+    told = []
+    for run in runs:
+        run.stdin.write("\n")
+        run.stdin.flush()
+    for run in runs:
+        told.append(float(run.communicate()[0]))
+    assert told == [-6.0, -6.0]
+    assert len(list(folder.iterdir())) == 2

@@ -87,6 +87,40 @@ def test_a_pitchfork_makes_no_folds(name, parameter, span, fork):
         assert "unexplained" not in branch.stopped
 
 
+def test_a_branch_that_runs_to_infinity_has_no_absurd_points():
+    """x = (c +- sqrt(c^2 - 4 a b))/2, y = -x/a: one of them is infinite at a = 0."""
+    diagram = rb.all_equilibria(rb.load_model("roessler"), "a", (-0.05, 0.2))
+    assert ["infinity" in branch.stopped for branch in diagram] == [False, True, True]
+    assert not any(branch.early for branch in diagram)
+    (hopf,) = diagram.special_points
+    assert hopf.omega == pytest.approx(1.0005, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "parameter", "span", "found"),
+    [
+        ("freire", {}, "nu", (-0.75, -0.5), ["H1", "BP1"]),
+        ("towed_wheel", {"J": 0.3, "b": 0.15, "d": 100.0}, "v", (0.2, 5.0), ["H1"]),
+        ("towed_wheel", {"J": 0.3, "b": 0.15, "d": 100.0}, "v", (5.0, 8.0), ["H1"]),
+    ],
+)
+def test_a_special_point_at_the_end_of_the_span(name, values, parameter, span, found):
+    branch = rb.continue_equilibria(rb.load_model(name, parameters=values), parameter, span)
+    assert [point.name for point in branch.special] == found
+    assert branch[found[-1]].parameters[parameter] in span
+    assert not branch.early
+    assert "unexplained" not in branch.stopped
+
+
+@pytest.mark.parametrize("equation", ["p*x-x**3", "p*x+x**3"])
+def test_branches_that_meet_at_the_end_of_the_span(equation):
+    """Only one of the two leads back into the span."""
+    model = rb.model_from_strings("fork", {"x": equation}, parameters={"p": -0.5}, guess={"x": 0.0})
+    diagram = rb.all_equilibria(model, "p", (-1.0, 0.0), probes=0)
+    assert diagram["EQ1"]["BP1"].parameters["p"] == 0.0
+    assert len(list(diagram)) == (1 if "-" in equation else 2)
+
+
 def test_a_transcritical_point_leads_to_its_other_branch():
     model = rb.model_from_strings(
         "transcritical", {"x": "p*x-x**2", "y": "-y"}, parameters={"p": -1.0}, guess={"x": 0.0}

@@ -1,0 +1,318 @@
+"""Random vehicles: does anything go wrong that nobody explains?
+
+Run ``python benchmarks/random_vehicles.py --count 10000``. Vehicle k is the same in every run; what
+is done is in a file of one JSON line a vehicle, and a run goes on where the last one stopped.
+``--only K`` does one vehicle and shows all that is known of it.
+
+Of each vehicle equilibria are followed in the speed and certified on the exact equations, a small
+chart is made in speed and stiffness, and of one in ``--share`` the orbits from the first Hopf point
+are followed. UNEXPECTED is: an exception that is not one of ours, a warning that reaches the user,
+a Hopf point that the exact equations refuse, a stability that the argument principle contradicts,
+an orbit that does not satisfy the exact equations.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import signal
+import time
+import traceback
+import warnings
+from collections import Counter
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+import racs_bif as rb
+from racs_bif.charts.settings import ChartSettings
+from racs_bif.errors import ConvergenceError, RacsBifError
+from racs_bif.fractional.argument import count_unstable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from racs_bif.fractional.system import System
+    from racs_bif.results.branch import Branch, Profile
+    from racs_bif.results.certificate import Certificate
+    from racs_bif.results.chart import Chart
+
+VARIANTS: Final = ("paper", "restoring", "lagrange", "paper12", "printed", "printed12")
+LIKELY: Final = (0.4, 0.2, 0.2, 0.1, 0.05, 0.05)
+SPEEDS: Final = (3.0, 40.0)
+METHODS: Final = ("collocation", "harmonic-balance")
+ALLOWED: Final = {"collocation": 0.1, "harmonic-balance": 1e-3}
+"""Residual of the exact equations along an orbit, relative: collocation has the realisation's."""
+PARTS: Final = ("continue", "certify", "orbits", "chart")
+PLACES: Final = 4
+"""Places of a chart at which roots are counted again."""
+_UNEXPECTED: Final = "UNEXPECTED"
+
+
+class TooLongError(BaseException):
+    """A part took longer than it may; no `except Exception` keeps it."""
+
+
+def draw(index: int) -> tuple[str, dict[str, float]]:
+    """Return the variant and the parameters of a vehicle, of a wheelchair's size to a lorry's."""
+    random = np.random.default_rng([9, index])
+
+    def between(low: float, high: float) -> float:
+        return float(random.uniform(low, high))
+
+    def over(low: float, high: float) -> float:
+        return float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+    variant = str(random.choice(VARIANTS, p=LIKELY))
+    a, b, m, c, m_c = between(0.6, 2.5), between(0.6, 2.5), over(400, 8000), between(0.1, 0.6), 0.0
+    m_c = m * between(0.02, 0.15)
+    values = {
+        "delta_f": between(-0.08, 0.08),
+        "m": m,
+        "I_z": m * a * b * between(0.6, 1.4),
+        "a": a,
+        "b": b,
+        "m_c": m_c,
+        "I_cs": m_c * over(0.1, 1.5),
+        "e": c * between(0.1, 1.2),
+        "c": c,
+        "d": c + between(0.1, 0.8),
+        "tau_eps": over(0.01, 100.0),
+        "tau_sig": over(0.01, 100.0),
+        "alpha": between(0.05, 0.95),
+        "gamma": between(0.05, 0.95),
+    }
+    for axle in "fr":
+        values |= {
+            f"B_{axle}": between(4.0, 15.0),
+            f"C_{axle}": between(1.1, 1.7),
+            f"D_{axle}": -m * between(2.5, 5.0),
+            f"E_{axle}": between(-3.0, 0.8),
+        }
+    return variant, values | {"C_s": m * over(3.0, 200.0)}
+
+
+def examine(index: int, *, share: int = 4, seconds: float = 60.0) -> dict[str, Any]:
+    """Do everything with one vehicle and return its row.
+
+    Parameters
+    ----------
+    index : int
+        Which vehicle.
+    share : int
+        Orbits are followed of one vehicle in so many.
+    seconds : float
+        The most that each part may take.
+    """
+    variant, values = draw(index)
+    began = time.perf_counter()
+    told: dict[str, tuple[str, str]] = {}
+    tracebacks: list[str] = []
+    found: list[Any] = []
+
+    def part(name: str, work: Callable[[], tuple[Any, str, str]]) -> Any:  # noqa: ANN401
+        result, outcome, detail, trace = _guarded(work, seconds)
+        told[name] = outcome, detail
+        if trace:
+            tracebacks.append(trace)
+        return result
+
+    system = rb.load_model("racs", parameters=values, variant=variant)
+    branch = part("continue", lambda: _continue(system))
+    if branch is not None:
+        found.append(branch)
+        part("certify", lambda: _certify(branch))
+        hopf = [point for point in branch.special if point.label == "H"]
+        if hopf and index % share == 0:
+            method = METHODS[index // share % 2]
+            part(f"orbits by {method}", lambda: _orbits(system, branch, method))
+    part("chart", lambda: _chart(system, index))
+    row = {"index": index, "variant": variant, "parts": told}
+    row["seconds"] = round(time.perf_counter() - began, 2)
+    return row | ({"tracebacks": tracebacks} if tracebacks else {})
+
+
+def _guarded(work: Callable[[], tuple[Any, str, str]], seconds: float) -> tuple[Any, str, str, str]:
+    """Return what a part made, its outcome, what is to be said of it, and a traceback."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            with _limited(seconds):
+                result, outcome, detail = work()
+        except RacsBifError as error:
+            result, outcome, detail = None, "error", str(error)
+        except TooLongError:
+            result, outcome, detail = None, "too long", f"more than {seconds:g} s"
+        except Exception as error:  # noqa: BLE001 - that is what is looked for
+            told = f"{type(error).__name__}: {error}"
+            return None, _UNEXPECTED, told, traceback.format_exc()
+    if caught:
+        first = caught[0]
+        where = f"{Path(first.filename).name}:{first.lineno}"
+        return result, _UNEXPECTED, f"warning at {where}: {first.message}", ""
+    return result, outcome, detail, ""
+
+
+@contextmanager
+def _limited(seconds: float) -> Iterator[None]:
+    def stop(_number: int, _frame: object) -> None:
+        raise TooLongError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _continue(system: System) -> tuple[Branch, str, str]:
+    branch = rb.continue_equilibria(system, "u", SPEEDS)
+    return branch, "early" if branch.early else "ok", branch.stopped
+
+
+def _certify(branch: Branch) -> tuple[Certificate, str, str]:
+    certificate = rb.certify(branch, "complete")
+    if certificate.holds:
+        return certificate, "ok", ""
+    findings = "; ".join(f"{check.subject}: {check.finding}" for check in certificate.failures)
+    return certificate, _UNEXPECTED, findings
+
+
+def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, str]:
+    hopf = next(point for point in branch.special if point.label == "H")
+    u = hopf.parameters["u"]
+    span = max(SPEEDS[0], 0.9 * u), min(SPEEDS[1], 1.1 * u)
+    orbits = rb.continue_orbits(hopf, span, method=method)
+    for name, profile in orbits.profiles.items():
+        at = system.with_parameters(orbits[name].parameters)
+        residual = exact_residual(at, profile)
+        if residual > ALLOWED[method]:
+            told = f"{name} leaves the exact equations a residual of {residual:.2g}"
+            return orbits, _UNEXPECTED, told
+    return orbits, "early" if orbits.early else "ok", orbits.stopped
+
+
+def exact_residual(system: System, profile: Profile) -> float:
+    """Return by how much an orbit misses the exact equations, over its greatest rate.
+
+    Samples of one period are Fourier transformed; element k answers ``exp(i omega t)`` by its law
+    at ``i omega``. Nothing of the library's orbit methods is used.
+    """
+    from scipy.interpolate import CubicSpline
+
+    states, times = profile.states, profile.times
+    if np.ptp(states, axis=0).max() < 1e-9:
+        return 0.0  # the Hopf point: no orbit yet
+    period = times[-1] - times[0]
+    closed = np.vstack([states[:-1], states[:1]])
+    count = 1024
+    grid = times[0] + period * np.arange(count) / count
+    y = CubicSpline(times, closed, bc_type="periodic")(grid)
+    rates = 2j * np.pi / period * np.fft.rfftfreq(count, 1.0 / count)
+    slopes = np.fft.irfft(rates[:, None] * np.fft.rfft(y, axis=0), count, axis=0)
+
+    p = system.values
+    padded = system.compiled.padded(p)
+    laws = system.exact.laws(p)
+    w = np.zeros((count, len(laws)))
+    e = _core(system, y, w, padded)[:, y.shape[1] :]
+    for k, law in enumerate(laws):
+        gains = np.array([law.numerator.at_zero / law.denominator.at_zero, *law(rates[1:])])
+        w[:, k] = np.fft.irfft(gains * np.fft.rfft(e[:, k]), count)
+    miss = slopes - _core(system, y, w, padded)[:, : y.shape[1]]
+    sizes = np.abs(slopes).max(axis=0)
+    return float((np.abs(miss).max(axis=0) / sizes).max())
+
+
+def _core(system: System, y: np.ndarray, w: np.ndarray, padded: np.ndarray) -> np.ndarray:
+    core = system.compiled.core
+    return np.array([core(np.append(one, out), padded) for one, out in zip(y, w, strict=True)])
+
+
+def _chart(system: System, index: int) -> tuple[Chart, str, str]:
+    stiffness = system.parameters["C_s"]
+    spans = (SPEEDS, (0.5 * stiffness, 2.0 * stiffness))
+    settings = ChartSettings(coarse=3, depth=5)
+    chart = rb.stability_chart(system, "u", "C_s", spans, settings=settings)
+    random = np.random.default_rng([10, index])
+    low, high = np.array(spans).T
+    places = low + random.random((PLACES, 2)) * (high - low)
+    for place, told in zip(places, chart.unstable_on(places), strict=True):
+        counted = _count(system.with_parameters(dict(zip(("u", "C_s"), place, strict=True))))
+        if counted is not None and told >= 0 and counted != told and not chart.torn:
+            where = f"u = {place[0]:.6g}, C_s = {place[1]:.6g}"
+            wrong = f"at {where} the chart says {told} unstable roots, counted are {counted}"
+            return chart, _UNEXPECTED, wrong
+    return chart, "early" if chart.early else "ok", " | ".join(chart.troubles)
+
+
+def _count(system: System) -> int | None:
+    """Return the number of unstable roots by the argument principle, None where it is open."""
+    p = system.values
+    try:
+        X = system.exact_point(system.equilibrium(), p)
+        return count_unstable(system.exact, X, p).unstable
+    except ConvergenceError:
+        return None
+
+
+def table(rows: Iterable[dict[str, Any]]) -> str:
+    """Return the outcomes by part as a Markdown table; numbers in messages are left out."""
+    counts: Counter[tuple[str, str, str]] = Counter()
+    examples: dict[tuple[str, str, str], int] = {}
+    for row in rows:
+        for part, (outcome, detail) in row["parts"].items():
+            plain = "" if outcome == "ok" else re.sub(r"-?\d[\d.]*(e[+-]?\d+)?", "#", detail)
+            key = part, outcome, plain.replace("|", "/").replace("\n", " ")[:150]
+            counts[key] += 1
+            examples.setdefault(key, row["index"])
+    lines = ["| part | outcome | vehicles | reason | for example |", "|---|---|---:|---|---:|"]
+    for key in sorted(counts, key=lambda k: (k[0], k[1] != "ok", k[1], -counts[k])):
+        part, outcome, detail = key
+        lines.append(f"| {part} | {outcome} | {counts[key]} | {detail} | {examples[key]} |")
+    return "\n".join(lines)
+
+
+def read(path: Path) -> list[dict[str, Any]]:
+    """Return the rows of a file; a last line that was cut off is left out."""
+    rows = []
+    for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
+        try:
+            rows.append(json.loads(line))
+        except json.JSONDecodeError:
+            continue
+    return rows
+
+
+def main() -> None:
+    """Examine vehicles and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=10_000, help="how many vehicles, from 0")
+    parser.add_argument("--share", type=int, default=4, help="orbits of one vehicle in so many")
+    parser.add_argument("--limit", type=float, default=60.0, help="seconds that a part may take")
+    parser.add_argument("--file", type=Path, default=Path("random_vehicles.jsonl"))
+    parser.add_argument("--only", type=int, help="examine this vehicle alone")
+    options = parser.parse_args()
+    if options.only is not None:
+        print(draw(options.only))
+        row = examine(options.only, share=1, seconds=options.limit)
+        print(json.dumps(row, indent=1), *row.get("tracebacks", ()), sep="\n")
+        return
+    done = {row["index"] for row in read(options.file)}
+    with options.file.open("a", encoding="utf-8") as file:
+        file.write("\n" if done else "")  # after a line that was cut off
+        for index in range(options.count):
+            if index not in done:
+                row = examine(index, share=options.share, seconds=options.limit)
+                file.write(json.dumps(row) + "\n")
+                file.flush()
+    print(table(read(options.file)))
+
+
+if __name__ == "__main__":
+    main()

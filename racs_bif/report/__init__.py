@@ -1,0 +1,1 @@
+"""The written report: results as one page of HTML."""
