@@ -25,6 +25,8 @@ TOLERANCE: Final = 1e-5
 START: Final = (0.0, 0.0, 0.01, 0.0)
 """v, w, delta_c, ddelta_c at t = 0."""
 _RATE: Final = 50.0
+_STILL: Final = 3.0
+"""Longer than the periods of all that moves [s]."""
 _SURE: Final = 3.0
 """Standard errors that a positive exponent must be away from zero."""
 
@@ -149,6 +151,12 @@ class Motion:
     times: Array
     angle: Array
     section: Array
+
+    @property
+    def rests(self) -> bool:
+        """Whether it has come to rest in the last seconds, as motions do that leave chaos."""
+        late = self.angle[self.times > self.times[-1] - _STILL]
+        return bool(np.ptp(late) < 0.05 * np.ptp(self.angle))
 
 
 def motion(values: Mapping[str, float], duration: float) -> Motion:

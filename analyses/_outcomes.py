@@ -139,4 +139,5 @@ def wilson(count: int, total: int) -> tuple[float, float]:
     middle = (share + 0.5 * z * z / total) / (1.0 + z * z / total)
     half = z * np.sqrt(share * (1.0 - share) / total + 0.25 * (z / total) ** 2)
     half /= 1.0 + z * z / total
-    return max(0.0, float(middle - half)), min(1.0, float(middle + half))
+    low = 0.0 if count == 0 else float(middle - half)
+    return low, 1.0 if count == total else float(middle + half)

@@ -30,13 +30,14 @@ _PARAMETERS: Final = 36
 _HOPF, _WANTED = 3, -4
 """Types of AUTO's points."""
 
-# EPSL, EPSU, EPSS and what is located (ISP = 2: every bifurcation) as this package has them
+# EPSL and EPSU are our Newton's tolerance, ISP = 2 locates every bifurcation as we do; with an EPSS
+# of the usual 1e-6 the wanted orbits would be beside the wanted values by more than their error
 _CONSTANTS: Final = """\
 NDIM={size}, IPS={kind}, IRS={start}, ILP=1, ICP={active}
 NTST=40, NCOL=4, IAD=3, ISP=2, ISW=1, IPLT=0, NBC=0, NINT=0
 NMX=2000, RL0={low}, RL1={high}, A0=0.0, A1=1e8
-NPR=0, MXBF=0, IID=0, ITMX=8, ITNW=5, NWTN=3, JAC=0
-EPSL=1e-8, EPSU=1e-8, EPSS=1e-6
+NPR=0, MXBF=0, IID=0, ITMX=20, ITNW=5, NWTN=3, JAC=0
+EPSL=1e-8, EPSU=1e-8, EPSS=1e-9
 DS={step}, DSMIN=1e-6, DSMAX={longest}, IADS=1
 NPAR={parameters}, UZR={{{wanted}}}
 """
@@ -127,7 +128,7 @@ class Auto:
         orbits = {}
         for solution in self._solutions():
             if solution.kind == _WANTED:
-                value = round(float(solution.parameters[0]), 6)
+                value = wanted[int(np.argmin(np.abs(np.array(wanted) - solution.parameters[0])))]
                 top = _highest(solution, 4, state)
                 orbits[value] = float(solution.parameters[10]), top
         return Found(points, used.seconds, used.megabytes, orbits)

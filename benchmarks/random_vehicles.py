@@ -1,4 +1,4 @@
-"""Random vehicles: does anything go wrong that nobody explains?
+"""Random vehicles: what goes wrong with them that nobody explains.
 
 Run ``python benchmarks/random_vehicles.py --count 10000``. Vehicle k is the same in every run; what
 is done is in a file of one JSON line a vehicle, and a run goes on where the last one stopped.
@@ -21,7 +21,7 @@ import time
 import traceback
 import warnings
 from collections import Counter
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -29,6 +29,7 @@ import numpy as np
 
 import racs_bif as rb
 from racs_bif.charts.settings import ChartSettings
+from racs_bif.equilibria.deflation import other_equilibria
 from racs_bif.errors import ConvergenceError, RacsBifError
 from racs_bif.fractional.argument import count_unstable
 
@@ -46,7 +47,6 @@ SPEEDS: Final = (3.0, 40.0)
 METHODS: Final = ("collocation", "harmonic-balance")
 ALLOWED: Final = {"collocation": 0.1, "harmonic-balance": 1e-3}
 """Residual of the exact equations along an orbit, relative: collocation has the realisation's."""
-PARTS: Final = ("continue", "certify", "orbits", "chart")
 PLACES: Final = 4
 """Places of a chart at which roots are counted again."""
 _UNEXPECTED: Final = "UNEXPECTED"
@@ -111,7 +111,6 @@ def examine(index: int, *, share: int = 4, seconds: float = 60.0) -> dict[str, A
     began = time.perf_counter()
     told: dict[str, tuple[str, str]] = {}
     tracebacks: list[str] = []
-    found: list[Any] = []
 
     def part(name: str, work: Callable[[], tuple[Any, str, str]]) -> Any:  # noqa: ANN401
         result, outcome, detail, trace = _guarded(work, seconds)
@@ -123,7 +122,6 @@ def examine(index: int, *, share: int = 4, seconds: float = 60.0) -> dict[str, A
     system = rb.load_model("racs", parameters=values, variant=variant)
     branch = part("continue", lambda: _continue(system))
     if branch is not None:
-        found.append(branch)
         part("certify", lambda: _certify(branch))
         hopf = [point for point in branch.special if point.label == "H"]
         if hopf and index % share == 0:
@@ -243,22 +241,34 @@ def _chart(system: System, index: int) -> tuple[Chart, str, str]:
     low, high = np.array(spans).T
     places = low + random.random((PLACES, 2)) * (high - low)
     for place, told in zip(places, chart.unstable_on(places), strict=True):
-        counted = _count(system.with_parameters(dict(zip(("u", "C_s"), place, strict=True))))
-        if counted is not None and told >= 0 and counted != told and not chart.torn:
+        counted = _counts(system.with_parameters(dict(zip(("u", "C_s"), place, strict=True))))
+        if counted and told >= 0 and told not in counted:
             where = f"u = {place[0]:.6g}, C_s = {place[1]:.6g}"
             wrong = f"at {where} the chart says {told} unstable roots, counted are {counted}"
             return chart, _UNEXPECTED, wrong
     return chart, "early" if chart.early else "ok", " | ".join(chart.troubles)
 
 
-def _count(system: System) -> int | None:
-    """Return the number of unstable roots by the argument principle, None where it is open."""
+def _counts(system: System) -> set[int]:
+    """Return the numbers of unstable roots of the equilibria there, as far as they are known.
+
+    The chart's equilibrium is continued from elsewhere; it need not be the one that Newton's
+    method finds from the model's guess.
+    """
     p = system.values
     try:
-        X = system.exact_point(system.equilibrium(), p)
-        return count_unstable(system.exact, X, p).unstable
+        first = system.exact_point(system.equilibrium(), p)
     except ConvergenceError:
-        return None
+        return set()
+    found = [first]
+    for spread in (1.0, 10.0):
+        scale = spread * np.maximum(np.abs(first), 0.01)
+        found += other_equilibria(system.exact, p, found, [np.zeros_like(first)], scale)
+    counts = set()
+    for X in found:
+        with suppress(ConvergenceError):
+            counts.add(count_unstable(system.exact, X, p).unstable)
+    return counts
 
 
 def table(rows: Iterable[dict[str, Any]]) -> str:

@@ -161,7 +161,7 @@ def _check_names(arguments: Namespace, system: System) -> None:
         name = arguments.parameter
         msg = f"--set {name} contradicts following {name} from LOW to HIGH; leave it out"
         raise UsageError(msg)
-    known = (*system.states, *system.outputs)
+    known = (*system.own, *system.outputs)
     if arguments.state is not None and arguments.state not in known:
         from racs_bif.errors import nearest
 

@@ -125,8 +125,8 @@ def _along(arguments: Namespace, system: System) -> str:
     from racs_bif.errors import nearest
     from racs_bif.symbolic.model import find_parameter
 
-    if arguments.state is not None and arguments.state not in system.states:
-        msg = f"unknown state '{arguments.state}'; {nearest(arguments.state, system.states)}"
+    if arguments.state is not None and arguments.state not in system.own:
+        msg = f"unknown state '{arguments.state}'; {nearest(arguments.state, system.own)}"
         raise UsageError(msg)
     names = [p.name for p in system.parameter_table]
     if arguments.along is not None:

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 
 _GROWTH = 0.5
 _SLOPE = 1e-3
-_VAST = 1e6
+_VAST = 1e5
+_STILL = 1e-6
 
 
 class Scaling:
@@ -109,7 +110,7 @@ class Scaling:
         if not abs(z[k]) > _VAST * self._largest:
             return False
         growing = z[k] * tangent[k] > 0.0
-        return bool(growing and abs(tangent[-1] * z[k]) < self._width / _VAST * abs(tangent[k]))
+        return bool(growing and abs(tangent[-1] * z[k]) < _STILL * self._width * abs(tangent[k]))
 
     def norm(self, v: Array) -> float:
         """Return the scaled norm of v (n+1,)."""

@@ -76,7 +76,8 @@ def solve_hopf(
     z = np.concatenate([X, [value, omega], q.real, q.imag])
     error = np.inf
     for _ in range(_ITERATIONS):
-        residual, jacobian = _system(model, path, border, z)
+        with np.errstate(all="ignore"):  # an iterate may be far out; then the step is not finite
+            residual, jacobian = _system(model, path, border, z)
         try:
             step = np.linalg.solve(jacobian, residual)
         except np.linalg.LinAlgError:

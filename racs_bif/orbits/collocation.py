@@ -84,6 +84,7 @@ class CollocationProblem(CollocatedProblem):
         self._degree = self.settings.degree
         self._gauss = gauss(self._degree)
         self._first_period: float | None = None
+        self._vanishing: tuple[Array, bool] | None = None
 
     # ------------------------------------------------------------------ the unknowns
 
@@ -183,8 +184,12 @@ class CollocationProblem(CollocatedProblem):
         """Return whether there is no amplitude, or it has changed sign where the branch began."""
         if self.at_crossing(z):
             return True
-        before = self.history.curve(z[-2])
-        return self.vanishing(z, before, self.settings.smallest, self.turns)
+        # asked of every point by the engine and by each detector
+        if self._vanishing is None or not np.array_equal(self._vanishing[0], z):
+            before = self.history.curve(z[-2])
+            vanishing = self.vanishing(z, before, self.settings.smallest, self.turns)
+            self._vanishing = (np.array(z), vanishing)
+        return self._vanishing[1]
 
     def scales(self, z: Array) -> Array:
         """Return the scales of the states, the same for all nodes, the period, and 1."""

@@ -99,12 +99,12 @@ class BorderedFolds:
     def __init__(self, folds: Folds, columns: Array, rows: Array, corner: Array) -> None:
         self._folds = folds
         folded, self._columns = folds.forward(columns)
-        left, self._rows = folds.backward(np.moveaxis(rows, 0, 1))
+        left, self._rows = folds.backward(rows.swapaxes(0, 1))
         for row, column in zip(self._rows, self._columns, strict=True):
             corner = corner + np.sum(row @ column, axis=0)
         products = folds.products
         ring = Ring(products, np.broadcast_to(-np.eye(products.shape[-1]), products.shape))
-        self._ring = BorderedRing(ring, folded, np.moveaxis(left, 1, 0), corner)
+        self._ring = BorderedRing(ring, folded, left.swapaxes(0, 1), corner)
 
     def sign(self) -> float:
         """Return the sign of the determinant, the same however long the ring: `Ring.sign`."""

@@ -80,7 +80,7 @@ class BorderedIntervals:
         self._adjoint = equations.stages.adjoint(stages + g.inner.T @ inner)
         rows = nodes[:, :, 0] + g.inner_start @ inner + g.row_sums @ self._adjoint
         meeting = corner + _products(self._adjoint, equations.columns)
-        columns = np.ascontiguousarray(np.moveaxis(equations.ends, 0, -1))
+        columns = np.ascontiguousarray(equations.ends.transpose(1, 2, 0))
         self._ring = BorderedFolds(equations.folds, columns, rows, meeting)
 
     def sign(self) -> float:
@@ -110,8 +110,8 @@ class BorderedIntervals:
         if active.any():
             moved[active] = equations.stages.at_ends(stages[active])
         border = border - _products(self._adjoint, stages)
-        points, unknowns = self._ring.solve(np.moveaxis(moved, 0, -1), border)
-        starts = np.ascontiguousarray(np.moveaxis(points, -1, 0))
+        points, unknowns = self._ring.solve(moved.transpose(1, 2, 0), border)
+        starts = np.ascontiguousarray(points.transpose(2, 0, 1))
         rhs = equations.from_starts(starts) + stages
         rhs += np.tensordot(unknowns.T, equations.columns, 1)
         values = equations.stages.solve(rhs)

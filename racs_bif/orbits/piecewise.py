@@ -60,6 +60,10 @@ class Piecewise:
 
     def stages(self) -> Array:
         """Return the values at the Gauss points (N, m, n)."""
+        return self._stages
+
+    @cached_property
+    def _stages(self) -> Array:
         return np.asarray(self.gauss.values @ self.closed)
 
     def velocities(self) -> Array:

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from racs_bif.results.special import OPERATING
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from racs_bif.results.branch import Branch
 
 _UNKNOWN = -1
 _ROUNDING = 1e-12
+_SHALLOW = 1e-3
 
 
 @dataclass(frozen=True)
@@ -65,27 +70,41 @@ def merged(parts: list[Stretch]) -> list[Stretch]:
 def describe_stability(branch: Branch) -> str:
     """Return a line such as ``"stable 5 to 10.2, unstable (2) 10.2 to 30"``.
 
-    It runs along the branch, from the end with the lower value of the active parameter.
+    It runs along the branch, from the end with the lower value of the active parameter. A stretch
+    on which the parameter turns back says how far it goes: ``"stable 24.737 to 1 to 24.737"``.
     """
     values = branch.parameter
-    parts = [(values[part.first], values[part.last], part) for part in stretches(branch)]
+    parts = [(_waypoints(values[part.first : part.last + 1]), part) for part in stretches(branch)]
     if len(branch) and values[-1] < values[0]:
-        parts = [(end, start, part) for start, end, part in reversed(parts)]
+        parts = [(way[::-1], part) for way, part in reversed(parts)]
     tiny = _ROUNDING * float(abs(values).max(initial=0.0))
-    ends = [[0.0 if abs(end) <= tiny else float(end) for end in part[:2]] for part in parts]
-    digits = _digits(ends)
+    ways = [[0.0 if abs(value) <= tiny else value for value in way] for way, _ in parts]
+    digits = _digits(ways, tiny)
     words = []
-    for (start, end), (_, _, part) in zip(ends, parts, strict=True):
+    for way, (_, part) in zip(ways, parts, strict=True):
         count = f" ({part.unstable})" if part.kind == "unstable" else ""
-        words.append(f"{part.kind}{count} {start:.{digits}g} to {end:.{digits}g}")
+        words.append(f"{part.kind}{count} {' to '.join(f'{value:.{digits}g}' for value in way)}")
     return ", ".join(words)
 
 
-def _digits(ends: list[list[float]]) -> int:
+def _waypoints(values: NDArray[np.float64]) -> list[float]:
+    """Return the ends of a stretch, and between them how far out it goes if it turns back."""
+    start, end = float(values[0]), float(values[-1])
+    least, most = float(values.min()), float(values.max())
+    shallow = _SHALLOW * (most - least)
+    out = [
+        (int(places.argmax()), value)
+        for places, value in ((values == least, least), (values == most, most))
+        if min(abs(value - start), abs(value - end)) > shallow
+    ]
+    return [start, *(value for _, value in sorted(out)), end]
+
+
+def _digits(ways: list[list[float]], tiny: float) -> int:
     """Return how many digits it takes to tell the ends of every stretch apart, at least five."""
+    pairs = [pair for way in ways for pair in pairwise(way) if abs(pair[0] - pair[1]) > tiny]
     for digits in range(5, 17):
-        told = [(f"{start:.{digits}g}", f"{end:.{digits}g}", start == end) for start, end in ends]
-        if all(first != last or same for first, last, same in told):
+        if all(f"{start:.{digits}g}" != f"{end:.{digits}g}" for start, end in pairs):
             return digits
     return 17
 

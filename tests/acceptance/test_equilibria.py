@@ -476,6 +476,8 @@ def test_a_curve_that_a_point_cannot_give_is_refused(oxidation, shimmy):
     with pytest.raises(UsageError, match="these can: HH"):
         continue_curve(shimmy, ("u", "C_s"), kind="hopf2")
     with pytest.raises(UsageError, match="unknown kind of curve"):
+        continue_curve(shimmy, ("u", "C_s"), kind="lcp")
+    with pytest.raises(UsageError, match="a lpc curve cannot start at H1"):
         continue_curve(shimmy, ("u", "C_s"), kind="lpc")
     with pytest.raises(UsageError, match="two different parameters"):
         continue_curve(shimmy, ("u", "u"))

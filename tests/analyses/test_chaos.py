@@ -16,7 +16,7 @@ def chaos():
 
 
 def test_a_few_vehicles(chaos, tmp_path):
-    chaos.run(tmp_path, members=3, duration=24.0, points=3)
+    chaos.run(tmp_path, members=3, duration=12.0, points=3)
     about = json.loads((tmp_path / "chaos.json").read_text(encoding="utf-8"))
     claimed, orders = about["numbers"]["claimed"], about["numbers"]["orders"]
     assert "chaos" not in claimed["kinds"]

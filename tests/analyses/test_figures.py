@@ -64,15 +64,17 @@ def test_below_and_above(numbers):
     assert above["multipliers"]
 
 
-def test_phase_portraits(numbers):
-    speed = numbers("fig06_phase_speed", **SHORT)
-    assert [speed[f"u = {u} m/s"]["stable"] for u in (10, 20)] == [True, False]
-    arm = numbers("fig11_phase_arm", **SHORT)
-    assert [found["stable"] for found in arm.values()] == [True, False, False, False]
-    mass = numbers("fig12_phase_mass", **SHORT)
-    assert [found["stable"] for found in mass.values()] == [True, False]
-    steering = numbers("fig14_phase_delta_f", **SHORT)
-    assert [found["stable"] for found in steering.values()] == [False, False, False, True]
+@pytest.mark.parametrize(
+    ("name", "stable"),
+    [
+        ("fig06_phase_speed", [True, False]),
+        ("fig11_phase_arm", [True, False, False, False]),
+        ("fig12_phase_mass", [True, False]),
+        ("fig14_phase_delta_f", [False, False, False, True]),
+    ],
+)
+def test_phase_portraits(name, stable, numbers):
+    assert [found["stable"] for found in numbers(name, **SHORT).values()] == stable
 
 
 @pytest.mark.parametrize(
@@ -84,13 +86,16 @@ def test_orders(name, hopf, numbers):
     assert found["alpha = 0.3"]["stable"] is bool(hopf)
 
 
-def test_sweeps_at_two_stiffnesses(numbers):
-    arm = numbers("fig09_arm", **COARSE)
-    assert arm["C_s"] == [near(CALIBRATED), near(13128, 1e-4)]
-    assert arm["hopf_c"] == [[near(0.295587, 1e-5)], [near(0.15)]]
-    steering = numbers("fig13_steering", **COARSE)
-    assert steering["C_s"][1] == near(37376, 1e-4)
-    assert steering["hopf_delta_f"][1] == [near(0.08)]
+def test_arm(numbers):
+    found = numbers("fig09_arm", **COARSE)
+    assert found["C_s"] == [near(CALIBRATED), near(13128, 1e-4)]
+    assert found["hopf_c"] == [[near(0.295587, 1e-5)], [near(0.15)]]
+
+
+def test_steering(numbers):
+    found = numbers("fig13_steering", **COARSE)
+    assert found["C_s"][1] == near(37376, 1e-4)
+    assert found["hopf_delta_f"][1] == [near(0.08)]
 
 
 def test_mass(numbers):

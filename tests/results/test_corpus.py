@@ -89,7 +89,9 @@ def test_a_truncated_file_of_any_kind_is_refused(path, share, tmp_path):
     whole = path.read_bytes()
     broken = tmp_path / "broken.nc"
     broken.write_bytes(whole[: int(share * len(whole))])
-    with pytest.raises(FileError, match=r"broken\.nc' cannot be read: .*; compute it again") as told:
+    with pytest.raises(
+        FileError, match=r"broken\.nc' cannot be read: .*; compute it again"
+    ) as told:
         rb.load(broken)
     assert "\n" not in str(told.value)
 

@@ -35,6 +35,14 @@ def test_ends_that_nearly_coincide_are_told_apart_and_rounding_is_zero(branch):
     assert describe_stability(about) == "stable -5 to 0, unstable (2) 0 to 20"
 
 
+def test_a_stretch_that_turns_back_says_how_far_it_goes(branch):
+    unstable = np.zeros(len(branch), dtype=int)
+    values = 1.0 + np.linspace(-2.0, 2.0, len(branch))[:, None] ** 2
+    values[len(branch) // 2] = 1.0
+    turned = replace(branch, values=values, unstable=unstable, special=())
+    assert describe_stability(turned) == "stable 5 to 1 to 5"
+
+
 @pytest.mark.parametrize("own", [0, 1, 2])
 def test_what_the_special_point_itself_has_does_not_matter(branch, own):
     unstable = branch.unstable.copy()

@@ -220,7 +220,6 @@ def test_the_text_does_not_depend_on_the_hash_seed(folder):
     assert len(digests) == 1
 
 
-
 @pytest.mark.parametrize("where", ["mkstemp", "fdopen", "replace", "mkdir"])
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EDQUOT])
 def test_a_full_disk_or_read_only_home_costs_speed_only(folder, builds, monkeypatch, where, number):
@@ -314,11 +313,9 @@ def test_two_processes_compiling_the_same_model_at_once(folder):
         )
         for _ in range(2)
     ]  # fmt: skip
-    told = []
     for run in runs:
         run.stdin.write("\n")
         run.stdin.flush()
-    for run in runs:
-        told.append(float(run.communicate()[0]))
+    told = [float(run.communicate()[0]) for run in runs]
     assert told == [-6.0, -6.0]
     assert len(list(folder.iterdir())) == 2

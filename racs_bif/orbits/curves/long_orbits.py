@@ -83,7 +83,7 @@ class LongOrbits(CollocationProblem):
         """Return the base parameters (np,)."""
         return self.path.vector(self.active(z))
 
-    def place(self, measure: str) -> int | None:
+    def place(self, measure: str) -> None:
         """Return None: the period is no unknown."""
         del measure
 

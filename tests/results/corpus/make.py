@@ -6,13 +6,17 @@ Files of older formats are never written again: that they still load is what the
 from __future__ import annotations
 
 import dataclasses
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import racs_bif as rb
 from racs_bif.charts.settings import ChartSettings
 from racs_bif.continuation.settings import StepSettings
-from racs_bif.results.branch import Profile
 from racs_bif.results.files import FORMAT
+
+if TYPE_CHECKING:
+    from racs_bif.results.branch import Profile
 
 FOLDER = Path(__file__).parent
 
@@ -72,4 +76,4 @@ if __name__ == "__main__":
     for kind, result in results().items():
         path = FOLDER / f"format{FORMAT}_{kind}.nc"
         rb.save(result, path)
-        print(path.name, path.stat().st_size, repr(result)[:100])
+        sys.stdout.write(f"{path.name} {path.stat().st_size}\n")
