@@ -60,6 +60,13 @@ class Family:
     side: Array
     kinds: tuple[str, ...]
 
+    @property
+    def doubtful(self) -> int:
+        """How many are undecided although their exponent is positive."""
+        positive = self.exponent > _SURE * self.error
+        pairs = zip(self.kinds, positive, strict=True)
+        return sum(kind == "undecided" and bool(above) for kind, above in pairs)
+
     def count(self, kind: str) -> int:
         """Return how many are of a kind."""
         return sum(each == kind for each in self.kinds)

@@ -114,8 +114,9 @@ class Edge:
         lines = []
         for a, b in ((self.a, self.b), (self.b, self.a)):
             way = b.place - a.place
-            with np.errstate(divide="ignore"):
-                room = np.where(way > 0.0, 1.0 - a.place, a.place) / np.abs(way)
+            moving = way != 0.0
+            ahead = np.where(way > 0.0, 1.0 - a.place, a.place)
+            room = np.where(moving, ahead / np.where(moving, np.abs(way), 1.0), np.inf)
             far = np.clip(a.place + way * float(room.min()), 0.0, 1.0)
             lines.append(Edge(self.lattice, a, replace(b, count=NOTHING, place=far)))
         return lines[0], lines[1]

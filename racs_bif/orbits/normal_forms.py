@@ -111,5 +111,9 @@ def _form(label: str, own: int, angle: float) -> CriticalForm:
 
 
 def own_states(field: VectorField) -> int:
-    """Return the number of states that are the model's own, not the memory of a realisation."""
-    return len(field.compiled.states if isinstance(field, RealisedField) else field.states)
+    """Return the number of states that are the model's own, not the memory of a realisation.
+
+    All of them where a model is made of elements only.
+    """
+    own = len(field.compiled.states) if isinstance(field, RealisedField) else 0
+    return own or len(field.states)

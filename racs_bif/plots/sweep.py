@@ -103,7 +103,7 @@ def draw(
         if diagram is not None:
             draw_diagram(diagram, found.quantity, ax=ax)
             for note in ax.texts:  # names stay readable over dots
-                note.set_bbox({"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.2})
+                note.set_bbox({"facecolor": "white", "alpha": 0.6, "linewidth": 0.0, "pad": 0.2})
     return ax
 
 

@@ -52,7 +52,9 @@ class CurveStart:
         system, omega = self.system, self.omega
         path = system.path(*self.parameters)
         values = [system.parameters[name] for name in self.parameters]
-        field, own = system.field, len(system.states)
+        field = system.field
+        # made of elements only, a model has nothing but memory to measure vectors by
+        own = len(system.states) or len(field.states)
         common = (path, self.span)
         if kind == "hopf" and operator == "realised":
             z = np.concatenate([self.x, [omega**2], values])

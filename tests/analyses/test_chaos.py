@@ -16,7 +16,7 @@ def chaos():
 
 
 def test_a_few_vehicles(chaos, tmp_path):
-    chaos.run(tmp_path, members=3, duration=12.0, points=3)
+    chaos.run(tmp_path, members=3, duration=8.0, points=3)
     about = json.loads((tmp_path / "chaos.json").read_text(encoding="utf-8"))
     claimed, orders = about["numbers"]["claimed"], about["numbers"]["orders"]
     assert "chaos" not in claimed["kinds"]
@@ -44,5 +44,7 @@ def test_the_verdict_follows_from_the_numbers(chaos):
     rest = family(**common, exponent=-three, side=np.array([1.0, -1.0, 1.0]), kinds=("rest",) * 3)
     assert "It is not chaos" in chaos.verdict(rest)
     assert "changes 2 times among the 3" in chaos.verdict(rest)
+    doubt = family(**common, exponent=three, side=0.0 * three, kinds=("rest", "undecided", "rest"))
+    assert "Not decided: 1 have a positive exponent" in chaos.verdict(doubt)
     some = family(**common, exponent=three, side=0.0 * three, kinds=("rest", "chaos", "chaos"))
     assert "Chaos it is from C_s = 2 to 3" in chaos.verdict(some)

@@ -69,7 +69,7 @@ def cli(capsys):
 @pytest.fixture
 def computed(monkeypatch, known):
     """Put known branches in place of computing; what is called may be changed by the test."""
-    system = SimpleNamespace(states=("v", "delta_c"), outputs=())
+    system = SimpleNamespace(states=("v", "delta_c"), own=("v", "delta_c"), outputs=())
     calls = SimpleNamespace(
         equilibria=lambda *_a, **_k: known.equilibria(),
         orbits=lambda *_a, **_k: known.orbits(),

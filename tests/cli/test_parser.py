@@ -18,7 +18,7 @@ def test_negative_numbers_are_numbers(text):
     parsed = _parse("continue", "p", text, "30", "--at", text, "1", "--set", f"x={text}")
     assert parsed.low == float(text)
     assert parsed.high == 30.0
-    assert parsed.at == [float(text), 1.0]
+    assert parsed.at == [("", float(text)), ("", 1.0)]
     assert parsed.values == [("x", float(text))]
 
 

@@ -157,5 +157,5 @@ def test_orders_that_cannot_be_are_refused_in_one_line(law, text):
 
 def test_no_equilibrium_to_start_from():
     model = rb.model_from_strings("none", {"x": "1 + x**2"}, parameters={})
-    with pytest.raises(ConvergenceError, match="no equilibrium"):
+    with pytest.raises(ConvergenceError, match="do not change with the states at the guess"):
         rb.simulate(model, 1.0, history="equilibrium")

@@ -1,0 +1,119 @@
+"""A handful of random vehicles; ``RACS_BIF_VEHICLES=50`` examines fifty.
+
+`benchmarks/random_vehicles.py` says what is done with each, and does ten thousand.
+"""
+
+import os
+import runpy
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import racs_bif as rb
+from racs_bif.errors import UsageError
+from racs_bif.results.branch import Profile
+from racs_bif.shelf.load import system_of
+
+PATH = Path(__file__).parents[1] / "benchmarks" / "random_vehicles.py"
+COUNT = int(os.environ.get("RACS_BIF_VEHICLES", "0"))
+VEHICLES = range(COUNT) if COUNT else (3, 4)
+
+
+@pytest.fixture(scope="module")
+def bench():
+    return SimpleNamespace(**runpy.run_path(str(PATH)))
+
+
+@pytest.mark.parametrize("index", VEHICLES)
+def test_nothing_unexpected_happens(bench, index):
+    row = bench.examine(index, seconds=600.0)
+    assert {"continue", "certify", "chart"} <= set(row["parts"]) or (
+        row["parts"]["continue"][0] != "ok"
+    )
+    wrong = {k: told for k, (outcome, told) in row["parts"].items() if outcome == "UNEXPECTED"}
+    assert not wrong, (bench.draw(index), row.get("tracebacks"))
+
+
+def test_a_vehicle_is_the_same_in_every_run(bench):
+    assert bench.draw(7) == bench.draw(7)
+    assert bench.draw(7) != bench.draw(8)
+    variants = {bench.draw(k)[0] for k in range(60)}
+    assert variants == set(bench.VARIANTS)
+    orders = np.array([[bench.draw(k)[1][n] for n in ("alpha", "gamma")] for k in range(60)])
+    assert orders.min() > 0.05
+    assert orders.max() < 0.95
+    for k in range(20):
+        variant, values = bench.draw(k)
+        system = rb.load_model("racs", parameters=values, variant=variant)  # all are valid
+        assert system.parameters["C_s"] == pytest.approx(values["C_s"], rel=1e-12)
+
+
+def test_what_is_unexpected_is_told(bench):
+    def raising():
+        return {}["x"]
+
+    def warning():
+        with np.errstate(invalid="warn"):
+            return np.array([0.0]) / 0.0, "ok", ""
+
+    def refusing():
+        raise UsageError("not so; do otherwise")
+
+    def endless():
+        while True:
+            pass
+
+    guarded = bench._guarded
+    assert guarded(raising, 60.0)[1:3] == ("UNEXPECTED", "KeyError: 'x'")
+    assert "KeyError" in guarded(raising, 60.0)[3]
+    assert guarded(warning, 60.0)[1] == "UNEXPECTED"
+    assert "invalid value" in guarded(warning, 60.0)[2]
+    assert guarded(refusing, 60.0)[1:3] == ("error", "not so; do otherwise")
+    assert guarded(endless, 0.05)[1] == "too long"
+    assert guarded(lambda: (1, "early", "why"), 60.0) == (1, "early", "why", "")
+
+
+def test_the_residual_of_an_orbit_is_seen(bench):
+    """Of the linear oscillator with a spring pot the exact orbit is known, another is refused."""
+    # x'' + D^alpha x + k x = damping x' with both parts of (i w)^alpha balanced at w = 1
+    alpha = 0.5
+    k = 1.0 - np.cos(alpha * np.pi / 2)
+    damping = np.sin(alpha * np.pi / 2)
+    model = rb.model_from_strings(
+        "springpot",
+        {"x": "y", "y": "damping*y - k*x - z"},
+        parameters={"k": k, "damping": damping},
+        elements=[("z", "x", f"s**{alpha}")],
+    )
+    system = system_of(model)
+    times = np.linspace(0.0, 2.0 * np.pi, 201)
+
+    def residual(rate):
+        states = np.column_stack([np.cos(times), -rate * np.sin(times)])
+        return bench.exact_residual(system, Profile(times=times, names=("x", "y"), states=states))
+
+    assert residual(1.0) < 1e-6
+    # the second equation misses 0.01 sin t + 0.01 damping cos t of a rate of 1.01
+    assert residual(1.01) == pytest.approx(0.01 * np.hypot(1.0, damping) / 1.01, rel=1e-3)
+
+
+def test_the_orbits_of_the_paper_s_vehicle_satisfy_the_exact_equations(bench):
+    system = rb.load_model("racs")
+    branch = rb.continue_equilibria(system, "u", (9.0, 11.0))
+    orbits, outcome, told = bench._orbits(system, branch, "harmonic-balance")
+    assert outcome == "ok", told
+    assert orbits.profiles
+
+
+def test_a_run_goes_on_where_it_was_cut_off(bench, tmp_path):
+    path = tmp_path / "rows.jsonl"
+    row = '{"index": 0, "parts": {"continue": ["ok", ""], "chart": ["early", "at u = 3.5|e"]}}'
+    path.write_text(f'{row}\n{row.replace("0", "1", 1)}\n{{"index": 2, "par')
+    rows = bench.read(path)
+    assert [r["index"] for r in rows] == [0, 1]
+    assert bench.table(rows).splitlines()[2:] == [
+        "| chart | early | 2 | at u = #/e | 0 |",
+        "| continue | ok | 2 |  | 0 |",
+    ]
