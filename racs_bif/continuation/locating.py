@@ -78,6 +78,9 @@ class Locator:
         before, after : float
             Its values at the ends, of opposite signs.
         """
+        detectors = self._builder.detectors
+        if place < len(detectors) and detectors[place].dismisses(segment.a, segment.b):
+            return None
         seen = {0.0: before, 1.0: after}
 
         def test(at: float, low: float, high: float) -> tuple[float, float]:

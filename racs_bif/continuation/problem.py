@@ -43,10 +43,14 @@ class Problem(ABC):
         What messages call the problem.
     parameter : str
         Name of the continuation parameter.
+    chord : bool
+        Whether Newton's method keeps a matrix while it contracts well: where `bordered` costs far
+        more than `residual` and what it returns.
     """
 
     name: str
     parameter: str
+    chord: bool = False
 
     @abstractmethod
     def residual(self, z: Array) -> Array:
@@ -168,6 +172,14 @@ class Detector(ABC):
     @abstractmethod
     def data(self, problem: Any, point: Point) -> dict[str, Any] | None:  # noqa: ANN401
         """Return what is known about the special point; None if it is not of this kind."""
+
+    def dismisses(self, before: Point, after: Point) -> bool:
+        """Return whether a change of sign between two points is surely of another kind.
+
+        It is then not located. By default it never is sure.
+        """
+        del before, after
+        return False
 
     def explains(self, data: dict[str, Any]) -> int:
         """Return how many eigenvalues change side at the special point of this data."""

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _SLOW = 0.5
+_CHORD = 0.1
+_CLOSE = 0.1
 _STAGNANT = 0.9
 _NOISE = 1e3
 _ROUNDING = 100 * np.finfo(float).eps
@@ -33,7 +35,16 @@ class NotFiniteError(ConvergenceError):
 
 
 class Equations(Protocol):
-    """What Newton's method needs to know."""
+    """What Newton's method needs to know.
+
+    Attributes
+    ----------
+    chord : bool
+        Whether a matrix is kept while it contracts tenfold or more: where it costs far more than
+        the residual.
+    """
+
+    chord: bool
 
     def residual(self, z: Array) -> Array:
         """Return the residual (n,) at z (n+1,)."""
@@ -56,7 +67,7 @@ class Corrected:
     tangent : array (n + 1,)
         Direction of the curve, with ``row @ tangent == 1``.
     iterations : int
-        How many corrections were made.
+        How many corrections were made by matrices of their own.
     contraction : float
         Ratio of the second correction to the first; 0 where that is within rounding.
     """
@@ -112,36 +123,61 @@ def newton(
     """
     right = np.zeros((len(z), 2), order="F")
     right[-1, 1] = 1.0
-    first = 0.0
-    last = math.inf
+    first, last = 0.0, math.inf
     noise = max(noise, _NOISE * tolerance)
-    for iteration in range(1, iterations + 1):
-        residual = equations.residual(z)
-        if not math.isfinite(residual.dot(residual)):
-            msg = "the residual is not finite"
-            raise NotFiniteError(msg)
-        right[:-1, 0] = residual
-        solution = equations.bordered(z, row)(right)
+    solve: Callable[[Array], Array] | None = None
+    matrices, corrections = 0, 0
+    while True:
+        right[:-1, 0] = residual = _residual(equations, z)
+        fresh = solve is None
+        if solve is None:
+            if matrices == iterations:
+                break
+            solve, matrices = equations.bordered(z, row), matrices + 1
+        solution = solve(right)
         correction = solution[:, 0]
-        size = math.sqrt(weights.dot(correction * correction))
-        if not math.isfinite(size):
-            msg = "Newton's correction is not finite"
-            raise NotFiniteError(msg)
-        corrected = z - correction
-        if iteration == 2 and size > noise:
-            first = size / last
-        if size <= tolerance:
-            return Corrected(corrected, solution[:, 1], iteration, first)
-        if size > (contraction if iteration == 2 else _SLOW) * last:
-            stagnant = size > _STAGNANT * last and size <= noise
-            if stagnant or _rounded(equations, z, residual):
-                return Corrected(corrected, solution[:, 1], iteration, 0.0)
+        size = _length(correction, weights)
+        corrected, corrections = z - correction, corrections + 1
+        ratio = size / last
+        if corrections == 2 and size > noise:
+            first = ratio
+        if fresh and size <= tolerance:
+            return Corrected(corrected, solution[:, 1], matrices, first)
+        if ratio > (contraction if corrections == 2 else _SLOW) and (fresh or corrections == 2):
+            stagnant = ratio > _STAGNANT and size <= noise
+            if fresh and (stagnant or _rounded(equations, z, residual)):
+                return Corrected(corrected, solution[:, 1], matrices, 0.0)
             if size > noise:
                 msg = "Newton's method does not contract"
                 raise ConvergenceError(msg)
+        if not _kept(equations, size, ratio, tolerance, fresh=fresh):
+            solve = None
         z, last = corrected, size
     msg = f"Newton's method did not converge in {iterations} iterations"
     raise ConvergenceError(msg)
+
+
+def _kept(
+    equations: Equations, size: float, ratio: float, tolerance: float, *, fresh: bool
+) -> bool:
+    """Return whether the matrix serves again; the last one is the solution's, for its tangent."""
+    return equations.chord and size > _CLOSE * tolerance and (fresh or ratio <= _CHORD)
+
+
+def _length(correction: Array, weights: Array) -> float:
+    size = math.sqrt(weights.dot(correction * correction))
+    if not math.isfinite(size):
+        msg = "Newton's correction is not finite"
+        raise NotFiniteError(msg)
+    return size
+
+
+def _residual(equations: Equations, z: Array) -> Array:
+    residual = equations.residual(z)
+    if not math.isfinite(residual.dot(residual)):
+        msg = "the residual is not finite"
+        raise NotFiniteError(msg)
+    return residual
 
 
 def damped_newton(

@@ -35,6 +35,7 @@ class CollocatedProblem(OrbitProblem):
     """
 
     equations: Equations
+    chord = True
 
     def __init__(self) -> None:
         self._found: tuple[Array, Collocated] | None = None

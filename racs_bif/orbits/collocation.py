@@ -18,7 +18,7 @@ from racs_bif.orbits.gauss import gauss
 from racs_bif.orbits.history import History
 from racs_bif.orbits.intervals import BorderedIntervals
 from racs_bif.orbits.piecewise import Piecewise, equidistant
-from racs_bif.orbits.polishing import direction, polished
+from racs_bif.orbits.polishing import followed, polished
 from racs_bif.orbits.sparse_jacobian import sparse_jacobian
 
 if TYPE_CHECKING:
@@ -278,8 +278,7 @@ class CollocationProblem(CollocatedProblem):
             return polished(self, found, row), row
         moved = Piecewise(curve.mesh, self.nodes(tangent))(times)
         moved = self.join(moved, float(tangent[-3]), float(tangent[-1]))
-        found = polished(self, found, moved)
-        return found, direction(self, found, moved)
+        return followed(self, found, moved)
 
     # ------------------------------------------------------------------ results
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from racs_bif.errors import ConvergenceError
+from racs_bif.orbits.banded import Band, BandedStages, band
 from racs_bif.orbits.checked import CheckedField
 from racs_bif.orbits.intervals import Linearised
 from racs_bif.orbits.lowrank import CONDITION, LowRankStages, Modes, modes
@@ -24,7 +25,7 @@ _RANK: Final = 0.4
 _INVERTED: Final = 28
 """Unknowns of an interval up to which an explicit inverse is faster than factors (measured)."""
 _SMALL: Final = 8
-"""States from which on it is faster than the dense one (measured)."""
+"""States from which on it, or a banded one, is faster than the dense one (measured)."""
 
 
 Active = float | NDArray[np.float64]
@@ -78,6 +79,7 @@ class Equations:
     def __init__(self, field: VectorField, path: ParameterPath) -> None:
         self.checked = CheckedField(field)
         self._field, self._path = field, path
+        self._band: Band | None = None
 
     def collocated(self, curve: Piecewise, period: float, active: Active) -> Collocated:
         """Return the equations at a curve.
@@ -128,16 +130,22 @@ class Equations:
         """
         columns = self.columns(at) / scales
         try:
-            stages = self._low_rank(at, scales) or self._dense(at, scales)
+            stages = self._low_rank(at, scales) or self._full(at, scales)
         except np.linalg.LinAlgError as error:
             raise ConvergenceError(
                 "the equations of a mesh interval are singular: take more intervals"
             ) from error
         return Linearised(at.curve.gauss, stages, columns)
 
-    def _dense(self, at: Collocated, scales: Array) -> Stages:
+    def _full(self, at: Collocated, scales: Array) -> Stages:
         balanced = self.jacobians(at) * (scales / scales[:, None])
         g = at.curve.gauss
+        if len(scales) >= _SMALL:
+            pattern = np.any(balanced != 0.0, axis=(0, 1))
+            if self._band is None or not self._band.holds(pattern):
+                self._band = band(pattern)
+            if self._band.narrow:
+                return BandedStages(g, balanced, at.tau, self._band)
         matrices = interval_matrices(g, balanced, at.tau)
         if g.degree * len(scales) <= _INVERTED:
             return InvertedStages(g, matrices)

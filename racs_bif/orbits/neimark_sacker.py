@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _NEAR: Final = 1e-2
 _REAL: Final = 1e-6
+_DEEP: Final = 0.3
 
 
 class NeimarkSacker(Detector):
@@ -40,6 +41,14 @@ class NeimarkSacker(Detector):
         sign = -1.0 if np.count_nonzero(products < 1.0) % 2 else 1.0
         return float(sign * np.abs(products - 1.0).min())
 
+    def dismisses(self, before: Point, after: Point) -> bool:
+        """Return whether real multipliers alone change the sign: at a neutral saddle of cycles.
+
+        There are as many complex pairs outside the unit circle as before, and inside near it. If
+        more has happened between the points, the number of multipliers outside tells.
+        """
+        return _pairs(before.spectrum[1:]) == _pairs(after.spectrum[1:])
+
     def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
         """Return angle, period, multipliers, normal form; None at a neutral saddle of cycles."""
         products, angles = _real_products(point.spectrum[1:])
@@ -49,6 +58,12 @@ class NeimarkSacker(Detector):
         angle = float(angles[k])
         form = cycle_normal_form(problem, point, self.label, angle)
         return {**describe(problem, point), "angle": angle, **form}
+
+
+def _pairs(multipliers: NDArray[np.complex128]) -> tuple[int, int]:
+    """Return the number of complex pairs outside the unit circle, and inside but not deep."""
+    sizes = np.abs(multipliers[multipliers.imag > 0.0])
+    return int(np.count_nonzero(sizes >= 1.0)), int(np.count_nonzero(sizes >= _DEEP))
 
 
 def _real_products(multipliers: NDArray[np.complex128]) -> tuple[Array, Array]:

@@ -11,8 +11,11 @@ from racs_bif.numerics.newton import damped_newton, newton
 
 
 class Circle:
+    chord = False
+
     def __init__(self):
         self.trail = []
+        self.matrices = 0
 
     def residual(self, z):
         self.trail.append(z.copy())
@@ -25,6 +28,7 @@ class Circle:
         return abs(self.jacobian(z)) @ abs(z)
 
     def bordered(self, z, row):
+        self.matrices += 1
         return factorise(np.vstack([self.jacobian(z), row]))
 
 
@@ -49,6 +53,30 @@ def test_convergence_is_quadratic():
 def test_tangent_comes_along():
     solved = newton(Circle(), np.array([0.6, 0.81]), ROW, WEIGHTS, tolerance=1e-10, iterations=9)
     assert solved.tangent == pytest.approx([1, -0.75], rel=1e-9)
+
+
+class Chord(Circle):
+    chord = True
+
+
+def test_a_chord_takes_two_matrices_and_the_tangent_is_the_solutions():
+    near, far = Chord(), Chord()
+    solved = newton(near, np.array([0.6, 0.83]), ROW, WEIGHTS, tolerance=1e-10, iterations=9)
+    assert near.matrices == solved.iterations == 2
+    assert solved.z == pytest.approx([0.6, 0.8], abs=1e-15)
+    assert solved.tangent == pytest.approx([1, -0.75], rel=1e-11)
+    # it contracts as slowly as Newton's own second correction says
+    assert solved.contraction == pytest.approx(0.019, abs=0.002)
+    # where it does not contract tenfold it is renewed, and is Newton's method again
+    newton(far, np.array([0.6, 1.1]), ROW, WEIGHTS, tolerance=1e-10, iterations=9)
+    assert 2 < far.matrices < len(far.trail)
+
+
+def test_a_chord_does_not_diverge_unseen():
+    chord = Chord()
+    with pytest.raises(ConvergenceError, match="contract"):
+        newton(chord, np.array([1.5, 0.1]), ROW, WEIGHTS, tolerance=1e-10, iterations=50)
+    assert len(chord.trail) <= 4
 
 
 def test_divergence_is_seen_at_once():
