@@ -72,7 +72,7 @@ class LocalProcesses(Backend):
 
     def __init__(self, workers: int) -> None:
         if workers < 1:
-            msg = f"at least one worker is needed, not {workers}"
+            msg = f"at least one worker is needed, not {workers}; give workers=1 or more"
             raise UsageError(msg)
         self.workers = workers
 

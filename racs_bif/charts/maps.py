@@ -80,7 +80,8 @@ class MapJob:
             raise UsageError(msg)
         size = lattice.plane.system.compiled.size
         if (quantity in SWEEPS) != (sweep is not None):
-            msg = f"a map of '{quantity}' {'needs' if sweep is None else 'has no'} simulations"
+            mend = "needs simulations; give sweep" if sweep is None else "has none; leave out sweep"
+            msg = f"a map of '{quantity}' {mend}"
             raise UsageError(msg)
         if size > LARGEST and sweep is None:
             msg = (

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.charts.rational import RationalSystem
+from racs_bif.fractional.rational import RationalSystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

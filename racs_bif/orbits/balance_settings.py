@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 from racs_bif.errors import UsageError
+
+OPERATORS: Final = ("exact", "realised")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,6 +17,9 @@ class BalanceSettings:
 
     Parameters
     ----------
+    operator : str
+        "exact", or "realised": the rational operators of the realisation, for comparison with what
+        shooting and collocation find on it.
     harmonics : int
         Harmonics at the start, and the fewest; adaptation takes more where the tail asks for it.
     most_harmonics : int
@@ -44,6 +50,7 @@ class BalanceSettings:
         If a setting is out of its range.
     """
 
+    operator: str = "exact"
     harmonics: int = 20
     most_harmonics: int = 200
     tail: float = 1e-8
@@ -56,6 +63,11 @@ class BalanceSettings:
     smallest: float = 1e-3
 
     def __post_init__(self) -> None:
+        if self.operator not in OPERATORS:
+            raise UsageError(
+                "setting 'operator' of harmonic balance must be "
+                f"{' or '.join(map(repr, OPERATORS))}, not {self.operator!r}"
+            )
         for name in ("tail", "poorest", "multipliers", "trivial", "longest", "smallest"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):

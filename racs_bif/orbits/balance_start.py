@@ -10,6 +10,7 @@ import numpy as np
 from racs_bif.errors import UsageError
 from racs_bif.fractional.exact import ExactModel
 from racs_bif.fractional.exact_hopf import solve_hopf
+from racs_bif.fractional.rational import RationalField
 from racs_bif.fractional.realised import RealisedField
 from racs_bif.orbits.balance import Balance
 from racs_bif.orbits.balance_settings import BalanceSettings
@@ -104,7 +105,7 @@ def balanced_from_hopf(
             "harmonic balance needs a model, not a vector field alone: its elements have to be "
             "known exactly; take shooting or collocation"
         )
-    model = ExactModel(field)
+    model = operated(field, settings)
     state, value = np.split(np.asarray(point, dtype=float), [-1])
     active = float(value[0])
     frame = field.frame(path.vector(active))
@@ -114,6 +115,13 @@ def balanced_from_hopf(
     return from_exact_hopf(
         model, path, solve_hopf(model, path, X, active, omega), settings=settings
     )
+
+
+def operated(field: RealisedField, settings: BalanceSettings | None) -> ExactModel:
+    """Return the model that is balanced: of the exact operators or, as settings say, rational."""
+    if settings is not None and settings.operator == "realised":
+        field = RationalField(field.compiled, field.realisation)
+    return ExactModel(field)
 
 
 def from_exact_hopf(
@@ -259,7 +267,7 @@ def _periodic(t: Array, x: Array, model: ExactModel, harmonics: int) -> Complex:
     if not (np.all(np.isfinite(x)) and np.all(np.isfinite(t)) and np.all(np.diff(t) > 0.0)):
         raise UsageError("the samples of an orbit must be finite and their times must rise")
     if np.ptp(x, axis=1).max() == 0.0:
-        raise UsageError("the samples do not move: this is an equilibrium, not an orbit")
+        raise UsageError("the samples of an orbit must move, these are an equilibrium")
     s = (t - t[0]) / (t[-1] - t[0])
     closed = x - np.outer(x[:, -1] - x[:, 0], s)
     closed[:, -1] = closed[:, 0]

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from racs_bif.errors import UsageError
-from racs_bif.fractional.exact import ExactModel
 from racs_bif.fractional.realised import RealisedField
 from racs_bif.orbits.balance import Balance
-from racs_bif.orbits.balance_start import BalanceStart, from_profile
+from racs_bif.orbits.balance_start import BalanceStart, from_profile, operated
 from racs_bif.orbits.fourier import doubled, harmonics_of, odd, turned
 from racs_bif.orbits.harmonic_balance import HarmonicBalanceProblem
 from racs_bif.orbits.phase_reference import PhaseReference
@@ -49,7 +48,7 @@ def balanced_from_samples(
     """
     if not isinstance(field, RealisedField):
         raise UsageError("harmonic balance needs a model, not a vector field alone")
-    return from_profile(ExactModel(field), path, times, profile, value, settings=settings)
+    return from_profile(operated(field, settings), path, times, profile, value, settings=settings)
 
 
 def balanced_through(

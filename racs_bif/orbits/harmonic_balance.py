@@ -89,7 +89,7 @@ class HarmonicBalanceProblem(OrbitProblem):
         self.path = path
         self.balance = balance
         self.settings = settings or BalanceSettings()
-        self.trivial = self.settings.trivial
+        self.trivial, self.operator = self.settings.trivial, self.settings.operator
         self._references: list[PhaseReference] = [reference]
         self._width = len(balance.kept)
         self._solution: tuple[bytes, Balanced] | None = None

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from racs_bif.charts.plane import Plane
-from racs_bif.charts.rational import RationalSystem
 from racs_bif.errors import UsageError, nearest
+from racs_bif.fractional.rational import RationalSystem
 from racs_bif.results.chart_curve import ChartCurve, curve_of
 from racs_bif.shelf.load import system_of
 from racs_bif.verbs.equilibria import check_span
@@ -70,7 +70,7 @@ def check_marks(plane: Plane, marks: Mapping[str, Sequence[float]]) -> None:
     spans = dict(zip(plane.names, plane.spans, strict=True))
     for name, values in marks.items():
         if name not in spans:
-            msg = f"points can be wanted at values of {' or '.join(plane.names)}, not of '{name}'"
+            msg = f"points must be wanted at values of {' or '.join(plane.names)}, not of '{name}'"
             raise UsageError(msg)
         low, high = spans[name]
         for value in values:

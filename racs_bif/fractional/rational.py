@@ -19,6 +19,7 @@ from racs_bif.fractional.realised import RealisedField
 from racs_bif.fractional.system import System
 
 if TYPE_CHECKING:
+    from racs_bif.fractional.bank import Frame
     from racs_bif.fractional.filter import Filter
     from racs_bif.symbolic.field import Array
 
@@ -49,6 +50,15 @@ class RationalField(RealisedField):
         frame = self._own.frame(p)
         pairs = zip(frame.laws, frame.filters, strict=True)
         return tuple(self._rational(law, done) for law, done in pairs)
+
+    @property
+    def states(self) -> tuple[str, ...]:  # type: ignore[override]
+        """Names of the states of the realised field."""
+        return self._own.states
+
+    def frame(self, p: Array) -> Frame:
+        """Return the frame of the filters themselves: memory states are theirs."""
+        return self._own.frame(p)
 
     def law_directions(self, p: Array, dp: Array) -> tuple[Law, ...] | None:
         """Return the derivatives of these laws along dp, None if no law moves."""
@@ -162,6 +172,6 @@ def _seen(poles: Array) -> tuple[float, float]:
 
 def _unusable(name: str) -> str:
     return (
-        f"the realisation of '{name}' cannot be written with its poles apart, as charts of the "
-        "realised operator need; choose the realisation 'diffusive' or 'fitted'"
+        f"the realisation of '{name}' cannot be written with its poles apart, as charts and "
+        "harmonic balance of the realised operator need; choose the realisation 'diffusive' or 'fitted'"
     )
