@@ -173,5 +173,6 @@ def _seen(poles: Array) -> tuple[float, float]:
 def _unusable(name: str) -> str:
     return (
         f"the realisation of '{name}' cannot be written with its poles apart, as charts and "
-        "harmonic balance of the realised operator need; choose the realisation 'diffusive' or 'fitted'"
+        "harmonic balance of the realised operator need; choose the realisation 'diffusive' or "
+        "'fitted'"
     )
