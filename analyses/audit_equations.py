@@ -290,7 +290,7 @@ def _draw(maps: list[SignMap]) -> Figure:
         ax.set_title(f"{one.variant}: {SIGNS[one.variant]}", fontsize=6.5, pad=3.0)
         ax.set_yticks([1.0, 1e1, 1e2, 1e3, 1e4], ["1", "10", "100", "1000", "10000"])
         ax.set_ylabel(r"$C_s$ [kN/rad]", fontsize=7.0)
-    panels[-1].set_xlabel("u [m/s]")
+    panels[-1].set_xlabel("$u$ [m/s]")
     handles: list[Artist] = [
         Patch(facecolor=shade, edgecolor="black", linewidth=0.4, label=name)
         for shade, name in zip(_SHADES, _NAMES, strict=True)

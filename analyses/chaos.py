@@ -128,7 +128,7 @@ def verdict(found: Family) -> str:
     top = int(np.nanargmax(found.exponent - 2.0 * found.error))
     parts = [f"{found.count(k)} {k}" for k in ("rest", "periodic", "chaos", "undecided")]
     text = (
-        f"of {total} values {', '.join(parts)}. The exponent that is most surely positive is "
+        f"of {total} values {', '.join(parts)}. Furthest above zero, by its error, is the exponent "
         f"{found.exponent[top]:.3g} +- {found.error[top]:.2g} 1/s at {name} = "
         f"{found.values[top]:.5g}. "
     )

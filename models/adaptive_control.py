@@ -38,6 +38,7 @@ def model() -> Model:
             Parameter("beta", 1.0, description="damping of the velocity"),
         ),
         descriptions={"x": "controlled quantity", "y": "its rate", "z": "its acceleration"},
+        time_unit="",
         title="adaptive control system",
         source="R. Genesio and A. Tesi, Automatica 28 (1992) 531; MatCont manual",
     )

@@ -41,6 +41,7 @@ def model() -> Model:
         ),
         guess={"x": 3.0, "y": 2.0},
         descriptions={"x": "prey", "y": "predators"},
+        time_unit="",
         title="Bazykin's predator and prey",
         source="A. D. Bazykin, Nonlinear Dynamics of Interacting Populations (1998)",
     )

@@ -41,6 +41,7 @@ def model() -> Model:
         ),
         guess={"x": 1.0, "y": 1.5},
         descriptions={"x": "concentration of X", "y": "concentration of Y"},
+        time_unit="",
         title="Brusselator",
         source="I. Prigogine and R. Lefever, J. Chem. Phys. 48 (1968) 1695",
     )

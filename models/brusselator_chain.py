@@ -61,6 +61,7 @@ def model(*, variant: str = "15") -> Model:
         guess=guess,
         descriptions={f"x_{j + 1}": f"concentration of X in cell {j + 1}" for j in range(cells)}
         | {f"y_{j + 1}": f"concentration of Y in cell {j + 1}" for j in range(cells)},
+        time_unit="",
         title="chain of Brusselators",
         source="M. Kubicek and M. Marek, Computational Methods in Bifurcation Theory (1983)",
         variant=variant,

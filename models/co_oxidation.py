@@ -60,6 +60,7 @@ def model() -> Model:
             "s": "surface blocked",
             "z": "free surface",
         },
+        time_unit="",
         title="CO oxidation on platinum",
         source="Bykov, Yablonskii and Kim, Dokl. AN SSSR 242 (1978) 637",
     )

@@ -42,6 +42,7 @@ def model() -> Model:
         ),
         guess={"v": -1.2, "w": -0.6},
         descriptions={"v": "voltage across the membrane", "w": "recovery"},
+        time_unit="",
         title="FitzHugh-Nagumo nerve",
         source="R. FitzHugh, Biophys. J. 1 (1961) 445",
     )

@@ -50,6 +50,7 @@ def model() -> Model:
         ),
         guess={"x": 1.0, "y": 1.5},
         descriptions={"x": "concentration of X", "y": "concentration of Y"},
+        time_unit="",
         title="Brusselator of fractional orders",
         source="Y. Wang and C. Li, Phys. Lett. A 363 (2007) 414",
         band=(0.01, 100.0),

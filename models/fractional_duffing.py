@@ -68,6 +68,7 @@ def model(*, variant: str = "free") -> Model:
         elements=(FractionalElement(output="w", input=x, law=s**a),),
         parameters=tuple(parameters),
         descriptions={"x": "displacement", "y": "velocity", "w": "D^a x"},
+        time_unit="",
         title="Duffing oscillator with a springpot",
         source="J. Padovan and J. T. Sawicki, Nonlinear Dynamics 16 (1998) 321",
         variant=variant,

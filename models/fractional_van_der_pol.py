@@ -42,6 +42,7 @@ def model() -> Model:
             Parameter("a", 0.5, description="order of the springpot", valid=(0.0, 1.0)),
         ),
         descriptions={"x": "displacement", "y": "velocity", "w": "D^a x"},
+        time_unit="",
         title="Van der Pol oscillator with a springpot",
         source="after R. S. Barbosa et al., J. Vib. Control 13 (2007) 1291",
         band=(0.01, 100.0),

@@ -44,6 +44,7 @@ def model() -> Model:
             Parameter("epsilon", 1.0, description="strength of the nonlinear damping"),
         ),
         descriptions={"x": "displacement", "y": "its derivative of order q"},
+        time_unit="",
         title="Van der Pol oscillator of fractional order",
         source="R. S. Barbosa et al., J. Vib. Control 13 (2007) 1291",
         band=(0.01, 100.0),

@@ -51,6 +51,7 @@ def model() -> Model:
             Parameter("b_3", 0.933578, description="cubic coupling conductance"),
         ),
         descriptions={"x": "first voltage", "y": "second voltage", "z": "current of the coil"},
+        time_unit="",
         title="Freire's circuit",
         source="E. Freire et al., Physica D 62 (1993) 230",
     )

@@ -75,6 +75,7 @@ def model() -> Model:
             "h": "inactivation of sodium",
             "n": "activation of potassium",
         },
+        time_unit="ms",
         title="Hodgkin-Huxley squid axon",
         source="A. L. Hodgkin and A. F. Huxley, J. Physiol. 117 (1952) 500",
         notes=("Time is in ms: periods are in ms and frequencies in rad/ms.",),

@@ -51,6 +51,7 @@ def model() -> Model:
             "y": "second coordinate in the plane of rotation",
             "z": "growth rate of the rotation, plus 0.7",
         },
+        time_unit="",
         title="Langford's torus",
         source="W. F. Langford, in: Numerical Methods for Bifurcation Problems (1984)",
     )

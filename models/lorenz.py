@@ -44,6 +44,7 @@ def model() -> Model:
             "y": "temperature between rising and sinking fluid",
             "z": "distortion of the vertical temperature profile",
         },
+        time_unit="",
         title="Lorenz equations",
         source="E. N. Lorenz, J. Atmos. Sci. 20 (1963) 130",
     )

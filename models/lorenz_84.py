@@ -58,6 +58,7 @@ def model() -> Model:
             "Z": "eddies, sine phase",
             "U": "baroclinic mode",
         },
+        time_unit="",
         title="Lorenz-84 circulation, extended",
         source="E. N. Lorenz, Tellus A 36 (1984) 98; Kuznetsov, Meijer and van Veen (2004)",
     )

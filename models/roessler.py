@@ -43,6 +43,7 @@ def model() -> Model:
             "y": "second coordinate in the plane of rotation",
             "z": "what folds the spiral back",
         },
+        time_unit="",
         title="Roessler equations",
         source="O. E. Roessler, Phys. Lett. A 57 (1976) 397",
     )

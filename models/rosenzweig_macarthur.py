@@ -46,6 +46,7 @@ def model() -> Model:
         ),
         guess={"x": 1.0, "y": 1.0},
         descriptions={"x": "prey", "y": "predators"},
+        time_unit="",
         title="Rosenzweig-MacArthur predator and prey",
         source="M. L. Rosenzweig and R. H. MacArthur, Am. Nat. 97 (1963) 209",
     )

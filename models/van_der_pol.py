@@ -40,6 +40,7 @@ def model() -> Model:
             Parameter("g", -0.5, description="gain; 1 in the usual form"),
         ),
         descriptions={"x": "anode voltage, scaled", "y": "its rate"},
+        time_unit="",
         title="Van der Pol oscillator",
         source="B. van der Pol, Phil. Mag. 2 (1926) 978",
     )

@@ -66,6 +66,7 @@ def model() -> Model:
             "w_1": "D^a theta_1",
             "w_2": "D^a (theta_2 - theta_1)",
         },
+        time_unit="",
         title="Ziegler's pendulum with springpots",
         source="H. Ziegler, Ingenieur-Archiv 20 (1952) 49",
         band=(0.01, 100.0),

@@ -22,6 +22,13 @@ class ParameterError(RacsBifError, ValueError):
     """An unknown parameter, or a value outside the model's validity."""
 
 
+class ValidityError(ParameterError, ArithmeticError):
+    """A value at which a model or a law no longer holds; along a branch, where the branch ends.
+
+    As an ArithmeticError it shortens a step that went too far, where one was taken.
+    """
+
+
 class ConvergenceError(RacsBifError, ArithmeticError):
     """An iteration that did not reach its tolerance."""
 

@@ -11,6 +11,7 @@ from racs_bif.cli.options import (
     open_system,
 )
 from racs_bif.cli.parser import Parser, assignment, number
+from racs_bif.units import after, frequency_unit
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -90,6 +91,7 @@ def run(arguments: Namespace) -> int:
     place = ", ".join(
         f"{name} = {value:g} {units[name]}".rstrip() for name, value in wanted.items()
     )
-    say(f"  exact Hopf point at {place}, omega = {result.omega:.8g} rad/s")
+    unit = after(frequency_unit(system.time_unit))
+    say(f"  exact Hopf point at {place}, omega = {result.omega:.8g}{unit}")
     say(f"  last relative correction {result.residual:.1e}")
     return 0

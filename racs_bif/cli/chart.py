@@ -112,7 +112,10 @@ def _curves(paths: Sequence[Path], names: tuple[str, str]) -> list[Branch]:
         branches = [result] if isinstance(result, Branch) else getattr(result, "branches", [])
         mine = [branch for branch in branches if set(branch.parameters) == set(names)]
         if not mine or not isinstance(result, Branch | Diagram):
-            msg = f"'{path}' holds no curve in {names[0]} and {names[1]}"
+            msg = (
+                f"'{path}' holds no curve in {names[0]} and {names[1]}; give one that "
+                f"'racs-bif curve LABEL {names[0]} {names[1]}' saved"
+            )
             raise UsageError(msg)
         found += mine
     return found
@@ -125,7 +128,7 @@ def _check(arguments: Namespace, names: tuple[str, str]) -> None:
         raise UsageError(msg)
     for name in arguments.spans:
         if name not in names:
-            msg = f"--span {name}: the plane is that of {names[0]} and {names[1]}"
+            msg = f"--span {name}: the plane is that of {names[0]} and {names[1]}; name one of them"
             raise UsageError(msg)
         check_span(*arguments.spans[name])
     if arguments.resume and not arguments.quantity:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Final
 
+from racs_bif.units import after
+
 if TYPE_CHECKING:
     from argparse import Namespace
 
@@ -68,7 +70,7 @@ def _tell_chart(chart: Chart, screen: Any) -> None:  # noqa: ANN401 - rich's con
         pad_edge=False,
         collapse_padding=True,
     )
-    for title in ("", "", *chart.parameters, "rad/s", "l1"):
+    for title in ("", "", *chart.parameters, chart.system.frequency_unit or "omega", "l1"):
         table.add_column(title, justify="left" if not title else "right", no_wrap=True)
     for k, boundary in enumerate(chart.boundaries):
         shape = "closed" if boundary.closed else f"{len(boundary)} points"
@@ -102,9 +104,8 @@ def _map(chart: Chart, found: ChartMap) -> str:
     range_ = f"{min(known):.4g} to {max(known):.4g} {unit}".rstrip() if known else "nothing"
     tally = ", ".join(f"{n} {text}" for text, n in sweep.tally.items() if n)
     of = "" if found.quantity == "lyapunov" else f" of {sweep.watch}"
-    return (
-        f"\nMap of {found.quantity}{of}, {cells}, {sweep.duration:.4g} s each: {range_}; {tally}."
-    )
+    each = f"{sweep.duration:.4g}{after(chart.system.time_unit)} each"
+    return f"\nMap of {found.quantity}{of}, {cells}, {each}: {range_}; {tally}."
 
 
 def troubles(result: Chart | ChartSlices) -> str:

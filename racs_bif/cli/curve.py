@@ -16,6 +16,7 @@ from racs_bif.cli.options import (
 )
 from racs_bif.cli.parser import Parser, choice, count_or_none, number
 from racs_bif.errors import UsageError
+from racs_bif.markup import with_unit
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -131,7 +132,7 @@ def run(arguments: Namespace) -> int:
     names = (arguments.first, arguments.second)
     for name in arguments.spans:
         if name not in names:
-            msg = f"--span {name}: the plane is that of {names[0]} and {names[1]}"
+            msg = f"--span {name}: the plane is that of {names[0]} and {names[1]}; name one of them"
             raise UsageError(msg)
         check_span(*arguments.spans[name])
     with progress(arguments) as task:
@@ -266,9 +267,11 @@ def _tell_curve(curve: Branch, screen: Console) -> None:
 def _shown(curve: Branch) -> dict[str, str]:
     """Return the measures of a curve that its table shows, and their headings."""
     if "period" not in curve.measures:
-        return {"omega": "rad/s", "l1": "l1"}
+        return {"omega": curve.system.frequency_unit or "omega", "l1": "l1"}
     others = {"angle": "angle, rad", "c": "c", "Re d": "Re d", "shift": "shift"}
-    return {"period": "period, s"} | {k: v for k, v in others.items() if k in curve.measures}
+    return {"period": with_unit("period", curve.system.time_unit)} | {
+        k: v for k, v in others.items() if k in curve.measures
+    }
 
 
 def _at(curve: Branch, measure: str, k: int) -> float:

@@ -14,6 +14,7 @@ from racs_bif.cli.options import (
 )
 from racs_bif.cli.parser import Parser, assignment, choice, number
 from racs_bif.errors import UsageError
+from racs_bif.units import after
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -172,7 +173,8 @@ def _tell(orbit: Branch, arguments: Namespace, summary: str) -> None:
     stability = {-1: "stability not known", 0: "stable"}.get(unstable, f"unstable ({unstable})")
     screen.print(
         f"\nOrbit at {name} = {point.parameters[name]:.8g} by {orbit.method}: period "
-        f"{point.period:.8g} s, {2.0 * math.pi / point.period:.6g} rad/s, {stability}"
+        f"{point.period:.8g}{after(orbit.system.time_unit)}, "
+        f"{2.0 * math.pi / point.period:.6g}{after(orbit.system.frequency_unit)}, {stability}"
     )
     screen.print(orbit.stopped)
     for table in (extremes_table(orbit), multiplier_table(orbit)):

@@ -74,7 +74,7 @@ def run(arguments: Namespace) -> int:
     try:
         save_picture(figure, target)
     except OSError as error:
-        msg = f"'{target}' cannot be written: {error.strerror or error}"
+        msg = f"'{target}' cannot be written: {error.strerror or error}; choose another place"
         raise FileError(msg) from error
     print(f"Wrote {target}")
     return 0

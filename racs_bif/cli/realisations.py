@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from racs_bif.cli.options import add_model_options, add_output_options, open_system
 from racs_bif.cli.parser import Parser, count, number
+from racs_bif.units import after
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -122,7 +123,7 @@ def _tell(table: RealisationTable, arguments: Namespace) -> None:
     title = f"Realisations of {table.system.model}"
     if table.hopf:
         place = ", ".join(f"{name} = {value:.8g}" for name, value in table.hopf.items())
-        title += f"; exact Hopf point at {place} rad/s"
+        title += f"; exact Hopf point at {place}{after(table.system.frequency_unit)}"
     screen.print(title)
     shown = Table(box=None, pad_edge=False, collapse_padding=True)
     shown.add_column("realisation", no_wrap=True)

@@ -87,7 +87,7 @@ def _options(function: Callable[..., Any], values: dict[str, float], path: Path)
             raise UsageError(msg)
         whole = isinstance(known[name], int)
         if whole and value != int(value):
-            msg = f"'{name}' of analysis '{path.stem}' is a whole number, not {value:g}"
+            msg = f"'{name}' of analysis '{path.stem}' must be a whole number, not {value:g}"
             raise UsageError(msg)
         options[name] = int(value) if whole else value
     return options

@@ -15,6 +15,8 @@ from racs_bif.cli.options import (
 )
 from racs_bif.cli.parser import Parser, assignment, choice, number
 from racs_bif.errors import UsageError
+from racs_bif.markup import with_unit
+from racs_bif.units import after
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -167,8 +169,8 @@ def _changes(given: list[list[str]]) -> dict[str, dict[float, float]]:
         try:
             at = number(time)
             name, value = assignment(text)
-        except ArgumentTypeError as error:
-            msg = f"--change: {error}"
+        except ArgumentTypeError as inner:
+            msg = f"--change: {inner}"
             raise UsageError(msg) from None
         inputs.setdefault(name, {})[at] = value
     return inputs
@@ -232,10 +234,14 @@ def _tell(history: TimeHistory, arguments: Namespace, summary: str) -> None:
         print(summary, end="")
     screen = console(arguments)
     screen.print(heading(history.system))
-    step = f", step {history.step:g} s" if math.isfinite(history.step) else ""
+    step = (
+        f", step {history.step:g}{after(history.system.time_unit)}"
+        if math.isfinite(history.step)
+        else ""
+    )
     screen.print(
         f"{history.operator} operator by {history.method}{step}, history '{history.history}', "
-        f"{history.times[-1]:g} s"
+        f"{history.times[-1]:g}{after(history.system.time_unit)}"
     )
     screen.print(_table(history))
     for note in history.system.notes:
@@ -257,7 +263,13 @@ def _table(history: TimeHistory) -> Table:
         collapse_padding=True,
     )
     table.add_column("", no_wrap=True)
-    for title in ("least", "greatest", "period [s]", "at the end", "error"):
+    for title in (
+        "least",
+        "greatest",
+        with_unit("period", history.system.time_unit),
+        "at the end",
+        "error",
+    ):
         table.add_column(title, justify="right", no_wrap=True)
     for name in history.names:
         told = column_summary(history, name)

@@ -13,6 +13,8 @@ from racs_bif.cli.options import (
     open_system,
 )
 from racs_bif.cli.parser import Parser, number
+from racs_bif.markup import with_unit
+from racs_bif.units import cycles_unit, frequency_unit, rate_unit
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -111,7 +113,10 @@ def _tell(found: Spectrum, arguments: Namespace) -> None:
     table = Table(
         title=f"\nExact roots with Re s > {roots.above:g}", title_justify="left", box=None
     )
-    for title in ("Re s [1/s]", "Im s [rad/s]", "Hz", "last correction", "realisation off by"):
+    time = found.system.time_unit
+    parts = with_unit("Re s", rate_unit(time)), with_unit("Im s", frequency_unit(time))
+    cycles = cycles_unit(time) or "Im s/2pi"
+    for title in (*parts, cycles, "last correction", "realisation off by"):
         table.add_column(title, justify="right")
     rows = zip(roots.roots.tolist(), roots.errors.tolist(), found.shifts.tolist(), strict=True)
     for root, error, shift in rows:

@@ -9,6 +9,7 @@ from rich.table import Table
 
 from racs_bif.results.special import OPERATING
 from racs_bif.results.stability import describe_stability
+from racs_bif.units import after, cycles_unit
 
 if TYPE_CHECKING:
     from racs_bif.results.branch import Branch
@@ -28,8 +29,8 @@ def heading(system: SystemInfo) -> str:
     if system.realisation is not None:
         how = system.realisation
         lines.append(
-            f"realisation {how.name}, {how.states} states, {how.band[0]:g} to {how.band[1]:g} "
-            f"rad/s, largest error there {100 * how.error:.2g} %"
+            f"realisation {how.name}, {how.states} states, {how.band[0]:g} to {how.band[1]:g}"
+            f"{after(system.frequency_unit)}, largest error there {100 * how.error:.2g} %"
         )
     return "\n".join(lines)
 
@@ -41,8 +42,9 @@ def special_table(diagram: Diagram) -> Table:
     table = _table("Special points")
     table.add_column("point", no_wrap=True)
     table.add_column("on", no_wrap=True)
+    times = system.frequency_unit or "omega", cycles_unit(system.time_unit) or "omega/2pi"
     exact = ("exact", "shift") if system.realisation is not None else ()
-    for title in (_with_unit(name, system), *exact, "rad/s", "Hz", "l1"):
+    for title in (_with_unit(name, system), *exact, *times, "l1"):
         table.add_column(title, justify="right", no_wrap=True)
     table.add_column("")
     for branch in diagram:
@@ -59,7 +61,11 @@ def operating_table(diagram: Diagram) -> Table:
     table = _table("Points asked for")
     table.add_column("point", no_wrap=True)
     table.add_column("on", no_wrap=True)
-    for title in (_with_unit(name, system), _with_unit(shown, system), "period [s]"):
+    for title in (
+        _with_unit(name, system),
+        _with_unit(shown, system),
+        _with_unit("period", system),
+    ):
         table.add_column(title, justify="right", no_wrap=True)
     table.add_column("", no_wrap=True)
     for branch in diagram:

@@ -134,7 +134,7 @@ class Segment:
         if doubt > _ALIKE or (doubt > 0.0 and moved > 100.0 * expected):
             return z, tangent, 0
         if not moved <= 0.5 * self.length:
-            msg = "a trial point left its segment"
+            msg = "a trial point left its segment of the branch"
             raise ConvergenceError(msg)
         if doubt <= _SOUND:
             # A tangent from a nearly singular matrix would only spoil the cubic.

@@ -64,10 +64,10 @@ def checked(problem: Problem, z: Array, span: tuple[float, float]) -> Array:
         raise UsageError(msg)
     z = np.array(z, dtype=float)
     if z.ndim != 1 or len(z) < 2:
-        msg = f"{problem.name}: a start is a vector of at least one unknown and the parameter"
+        msg = f"{problem.name}: a start must be a vector of at least one unknown and the parameter"
         raise UsageError(msg)
     if not np.isfinite(z).all():
-        msg = f"{problem.name}: the start holds values that are not finite"
+        msg = f"{problem.name}: all values of the start must be finite"
         raise UsageError(msg)
     for end in span:
         if abs(z[-1] - end) <= _EDGE * (high - low):

@@ -13,7 +13,7 @@ from racs_bif.continuation.checking import CONTRACTION, judge
 from racs_bif.continuation.segment import Segment
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.told import LOG
-from racs_bif.errors import ConvergenceError
+from racs_bif.errors import ConvergenceError, ValidityError
 from racs_bif.numerics.newton import Corrected, NotFiniteError, newton
 
 if TYPE_CHECKING:
@@ -30,7 +30,9 @@ _ROUNDED = 1e-12
 
 
 def _cause(error: Exception) -> Stopped:
-    """Say whether Newton's method failed or the equations did."""
+    """Say whether Newton's method failed, the equations did, or the model no longer holds."""
+    if isinstance(error, ValidityError):
+        return Stopped.VALIDITY
     newton_failed = isinstance(error, ConvergenceError | np.linalg.LinAlgError)
     if newton_failed and not isinstance(error, NotFiniteError):
         return Stopped.STEP

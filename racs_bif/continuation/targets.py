@@ -125,13 +125,13 @@ def detectors_of(
     for name, values in targets.items():
         for value in map(float, dict.fromkeys(values)):
             if not math.isfinite(value):
-                msg = f"the value {value!r} wanted of '{name}' is not finite"
+                msg = f"the value {value!r} wanted of '{name}' must be finite"
                 raise UsageError(msg)
             if name == problem.parameter:
                 if not low <= value <= high:
                     msg = (
                         f"the point wanted at {name} = {value:.10g} is outside the span "
-                        f"{low:.10g} to {high:.10g}"
+                        f"{low:.10g} to {high:.10g}; widen the span"
                     )
                     raise UsageError(msg)
                 found.append(ParameterTarget(name, value, settings, high - low))

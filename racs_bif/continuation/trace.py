@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from racs_bif.continuation.building import Builder
 from racs_bif.continuation.points import Array, Point, Trace
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from racs_bif.continuation.problem import Detector, Problem
 
 
+_STUCK: Final = {Stopped.STEP, Stopped.TURN, Stopped.FAILED, Stopped.VALIDITY}
 Until = Callable[[Point, Point], Stopped | None]
 """Sees every step and says whether the branch ends with it, and why."""
 
@@ -168,7 +169,7 @@ def _walk(
 
 def _check_left(problem: Problem, walks: list[_Walk]) -> None:
     """Raise if a start that could not be corrected could not be left either."""
-    if all(walk.stopped in {Stopped.STEP, Stopped.TURN, Stopped.FAILED} for walk in walks):
+    if all(walk.stopped in _STUCK for walk in walks):
         point = walks[0].watch.nodes[0][0]
         msg = (
             f"{problem.name}: no branch found along the given tangent at {problem.parameter} = "

@@ -80,7 +80,7 @@ class BranchPointCurve(CurveProblem):
     def realised(self, z: Array) -> tuple[RealisedField, Array, Array]:
         """Return the realised field, its states (n,) at rest, and the base parameters."""
         X, p = self.base(z)
-        return self._realised, self._realised.rest(X[: self.own], X[self.own :], p), p
+        return self._realised, self.resting(self._realised, X, p), p
 
     def _solve(self, z: Array) -> _Solved:
         if self._solved is not None and np.array_equal(self._solved.z, z):

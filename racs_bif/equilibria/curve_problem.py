@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 from racs_bif.continuation.points import Array, Spectrum
 from racs_bif.continuation.problem import Bound, Problem
+from racs_bif.errors import ValidityError
+from racs_bif.fractional.bank import other_size
 from racs_bif.fractional.realised import RealisedField
 
 if TYPE_CHECKING:
@@ -76,6 +78,7 @@ class CurveProblem(Problem):
         self._span = span
         self._measures = measures
         self.typical = 0.0
+        self._size = 0
         self._vector: tuple[bytes, Array] = (b"", np.empty(0))
 
     def base(self, z: Array) -> tuple[Array, Array]:
@@ -93,6 +96,20 @@ class CurveProblem(Problem):
     def directions(self, z: Array) -> tuple[Array, Array]:
         """Return the directions (np,) of the two active parameters."""
         return self.path.direction(z[-2:], 0), self.path.direction(z[-2:], 1)
+
+    def resting(self, field: RealisedField, X: Array, p: Array) -> Array:
+        """Return the realised states (n,) at rest beside an exact point X.
+
+        Raises
+        ------
+        ValidityError
+            If they are not as many as at the first point.
+        """
+        x = field.rest(X[: self.own], X[self.own :], p)
+        self._size = self._size or len(x)
+        if len(x) != self._size:
+            raise ValidityError(other_size(len(x), self._size))
+        return x
 
     def bounds(self) -> tuple[Bound, ...]:
         """Return the span of the first parameter."""

@@ -48,7 +48,7 @@ class ExactFoldCurve(FoldCurve):
     def realised(self, z: Array) -> tuple[RealisedField, Array, Array]:
         """Return the realised field, its states (n,) at rest, and the base parameters."""
         X, p = self.base(z)
-        return self._realised, self._realised.rest(X[: self.own], X[self.own :], p), p
+        return self._realised, self.resting(self._realised, X, p), p
 
     def alignment(self, z: Array) -> float:
         """Return w . v of the realisation's unit null vectors, turned as those of Delta(0)."""

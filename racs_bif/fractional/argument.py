@@ -262,7 +262,10 @@ def _read(
     number = round(turns)
     distance = abs(turns - number)
     if distance > 0.05 or number < 0:
-        msg = f"the argument principle gives {turns:.3f} roots right of Re s = {above:g}"
+        msg = (
+            f"the argument principle gives {turns:.3f} roots right of Re s = {above:g}, which is "
+            "no count; move the line or scale the model"
+        )
         raise ConvergenceError(msg)
     return Count(
         number, above, on_line, ring.at_zero, distance, change.discrepancy, change.evaluations

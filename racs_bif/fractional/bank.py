@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from racs_bif.errors import ValidityError
 from racs_bif.numerics.sparse import LARGE
 
 if TYPE_CHECKING:
@@ -70,6 +71,8 @@ class Bank:
         """Return what the core takes, (y, C z), from states (ny + nz,)."""
         if not self.filters:
             return x
+        if len(x) != self.own + len(self.A):
+            raise ValidityError(other_size(self.own + len(self.A), len(x)))
         if self.own < LARGE:
             return np.asarray(self.right @ x)
         return np.concatenate((x[: self.own], self.C @ x[self.own :]))
@@ -117,6 +120,14 @@ class Frame:
         fixed = bank.left @ self.compiled.fixed_jacobian(self.P) @ bank.right
         fixed[bank.own :, bank.own :] += bank.A
         return np.asarray(fixed)
+
+
+def other_size(here: int, before: int) -> str:
+    """Say that the filters have become others, as they do where an order passes a whole number."""
+    return (
+        f"the realised system has {here} states here, not {before} as before, where an order "
+        "passes a whole number; narrow the span"
+    )
 
 
 def diagonal(blocks: Sequence[Array]) -> Array:

@@ -28,6 +28,7 @@ CROSSINGS: Final = {"H": (2,), "LP": (1,), "BP": (0, 1)}
 _LEAST: Final = 1e-3
 _NEAR: Final = 0.05
 _TINY: Final = 1e-6  # states all smaller than this are compared with it
+_ROUNDED: Final = 1e-8
 _ITERATIONS: Final = 20
 _TOLERANCE: Final = 1e-11
 
@@ -154,8 +155,8 @@ def beside(model: ExactModel, path: ParameterPath, start: Place, end: Place) -> 
     z, stop = np.append(start.X, start.value), np.append(end.X, end.value)
     chord = stop - z
     size = np.maximum(np.abs(z), np.abs(stop))
-    weight = np.zeros(len(z))
-    np.divide(chord, size**2, out=weight, where=size > 0.0)
+    # a state that is zero but for rounding has no magnitude of its own
+    weight = chord / np.maximum(size, _ROUNDED * max(float(size.max()), 1.0)) ** 2
     z = target = z + 0.25 * chord
     for _ in range(_ITERATIONS):
         p, dp = path.vector(z[-1]), path.direction(z[-1])
@@ -173,7 +174,10 @@ def beside(model: ExactModel, path: ParameterPath, start: Place, end: Place) -> 
             if away > float(np.abs(chord[:-1]).max()) and not near(z[:-1], target[:-1]):
                 raise ConvergenceError(_elsewhere(z[:-1], target[:-1]))
             return Place(X=z[:-1], value=float(z[-1]))
-    msg = f"no exact equilibrium found beside {path.names[0]} = {start.value:.7g}"
+    msg = (
+        f"no exact equilibrium found beside {path.names[0]} = {start.value:.7g}; "
+        "continue the branch with smaller steps"
+    )
     raise ConvergenceError(msg)
 
 
@@ -188,7 +192,10 @@ def near(one: Array, other: Array) -> bool:
 
 def _elsewhere(X: Array, reported: Array) -> str:
     away = float(np.abs(X - reported).max())
-    return f"the exact equilibrium is elsewhere: its states differ by {away:.1e}"
+    return (
+        f"the exact equilibrium is elsewhere, its states differ by {away:.1e}; "
+        "use a finer realisation"
+    )
 
 
 def changes(labels: Iterable[str]) -> set[int]:

@@ -44,7 +44,10 @@ class Characteristic:
         core = np.atleast_2d(np.asarray(core, dtype=float))
         self.size = len(core)
         if not self.size == core.shape[1] == len(left) == len(right):
-            msg = f"{len(left)} and {len(right)} rows do not fit a matrix {core.shape}"
+            msg = (
+                f"{len(left)} and {len(right)} rows of powers do not fit a matrix {core.shape}; "
+                "give a square one and a row on either side for each of its rows"
+            )
             raise ParameterError(msg)
         self.left = tuple(merged(row) for row in left)
         self.right = tuple(merged(row) for row in right)

@@ -65,7 +65,7 @@ def creep(law: Law, t: ArrayLike) -> Array:
 def _step_response(above: PowerSum, below: PowerSum, t: ArrayLike, what: str) -> Array:
     t = np.asarray(t, dtype=float)
     if not np.all((t > 0.0) & np.isfinite(t)):
-        msg = f"the {what} is there for times above zero"
+        msg = f"the {what} is there for times above zero; give finite, positive ones"
         raise UsageError(msg)
     above, below = merged(above), merged(below)
     terms = len(below.exponents)
@@ -79,7 +79,7 @@ def _step_response(above: PowerSum, below: PowerSum, t: ArrayLike, what: str) ->
         return _powers(above, below, t)
     order = float(below.exponents[1] - below.exponents[0])
     if order > 2.0:
-        msg = f"the {what} has no closed form here: the order {order:g} is over 2"
+        msg = f"the {what} has no closed form here: the order {order:g} is over 2; simulate it"
         raise UsageError(msg)
     rate = float(below.coefficients[0] / below.coefficients[1])
     total = np.zeros(t.shape)

@@ -85,7 +85,10 @@ def solve_fold(model: ExactModel, path: ParameterPath, X: Array, value: float) -
         if error < _TOLERANCE:
             break
     if not error < _ENOUGH:
-        msg = f"no exact fold found near {path.names[0]} = {value:g}"
+        msg = (
+            f"no exact fold found near {path.names[0]} = {value:g}; "
+            "widen the realisation's band or raise its order"
+        )
         raise ConvergenceError(msg)
     return ExactFold(z[:m], float(z[m]), z[m + 1 :], error)
 

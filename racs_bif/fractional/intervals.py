@@ -192,8 +192,8 @@ def _absorb(a: Ball | float, b: Ball | float) -> Ball:
 
 
 def _not_enclosed(*_: object) -> NoReturn:
-    msg = "the equations call a Python function, of which nothing can be proved; write them so that"
-    raise UsageError(f"{msg} they can be recorded, or as strings")
+    msg = "nothing can be proved of equations that call a Python function; write them as strings"
+    raise UsageError(msg)
 
 
 BALLS = SimpleNamespace(

@@ -123,7 +123,8 @@ def _prove(equations: Equations, what: str) -> Box:
     try:
         step = _Step(equations, centre)
     except (UnboundedError, np.linalg.LinAlgError) as error:
-        msg = f"no proof of a {what}: the equations cannot be solved at its place ({error})"
+        why = f"the equations cannot be solved at its place ({error})"
+        msg = f"no proof of a {what}, {why}; ask for strength='complete'"
         raise ConvergenceError(msg) from None
     ratio, reason = _LARGEST, ""
     while ratio > _SMALLEST:
@@ -144,7 +145,10 @@ def _prove(equations: Equations, what: str) -> Box:
             return Box(equations.names, equations.centre, radii, lower, upper)
         reason = "the equations vary too much, or the approximation is too far off"
         ratio *= _SHRINK
-    msg = f"no box around the {what} could be proved to hold exactly one: {reason}"
+    msg = (
+        f"no box around the {what} could be proved to hold exactly one, {reason}; "
+        "ask for strength='complete'"
+    )
     raise ConvergenceError(msg)
 
 

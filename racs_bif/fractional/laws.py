@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from racs_bif.errors import ParameterError
+from racs_bif.errors import ValidityError
 
 if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array
@@ -121,7 +121,7 @@ def read_numbers(name: str, numbers: Array, sizes: tuple[int, int], *, feedthrou
     """
     if not np.all(np.isfinite(numbers)):
         msg = f"the law of '{name}' is not finite at these parameters; check its orders and times"
-        raise ParameterError(msg)
+        raise ValidityError(msg)
     n, d = _split(numbers, sizes)
     _check_orders(name, n, d)
     lowest = min(n.exponents.min(), d.exponents.min())
@@ -166,7 +166,7 @@ def _check_orders(name: str, *sums: PowerSum) -> None:
                     f"the law of '{name}' has the order {order:g}; fractional orders lie between "
                     "-2 and 2: use derivatives of its input, or two elements"
                 )
-                raise ParameterError(msg)
+                raise ValidityError(msg)
 
 
 def _check(law: Law) -> None:
@@ -176,10 +176,10 @@ def _check(law: Law) -> None:
             f"the law of '{law.name}' grows like s**{top - bottom:g}; feed it the derivative of "
             "its input and lower its order by one"
         )
-        raise ParameterError(msg)
+        raise ValidityError(msg)
     if not law.feedthrough and top >= bottom:
         msg = (
             f"the law of '{law.name}' no longer vanishes at high frequency (orders {top:g} over "
             f"{bottom:g}); keep the order of its numerator below that of its denominator"
         )
-        raise ParameterError(msg)
+        raise ValidityError(msg)

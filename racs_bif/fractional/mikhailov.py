@@ -84,7 +84,10 @@ def mikhailov(ch: Characteristic) -> MikhailovCount:
     turns += (beyond - before - change.log.imag) / np.pi
     number = round(turns)
     if abs(turns - number) > _TRUSTED or number < 0:
-        msg = f"the phase on the imaginary axis gives {turns:.3f} unstable roots"
+        msg = (
+            f"the phase on the imaginary axis gives {turns:.3f} unstable roots, which is no count; "
+            "scale the model"
+        )
         raise ConvergenceError(msg)
     distance = abs(turns - number)
     return MikhailovCount(number, (), ring.at_zero, distance, change.evaluations)

@@ -57,12 +57,10 @@ def mittag_leffler(a: float, b: float, z: ArrayLike) -> NDArray[Any]:
     """
     z = np.asarray(z, dtype=complex if np.iscomplexobj(z) else float)
     if not 0.0 < a <= 2.0 or not abs(b) <= _HIGHEST:
-        msg = (
-            f"E_{{a,b}} is there for 0 < a <= 2, |b| <= {_HIGHEST:g}; a = {a:g}, b = {b:g} are not"
-        )
+        msg = f"E_{{a,b}} must have 0 < a <= 2 and |b| <= {_HIGHEST:g}, not a = {a:g} and b = {b:g}"
         raise UsageError(msg)
     if not np.all(np.isfinite(z)):
-        msg = "the argument of the Mittag-Leffler function is not finite"
+        msg = "the argument of the Mittag-Leffler function must be finite"
         raise UsageError(msg)
     flat = z.ravel().astype(complex)
     value = np.zeros(flat.shape, dtype=complex)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from racs_bif.errors import ParameterError, UsageError
+from racs_bif.errors import UsageError, ValidityError
 from racs_bif.fractional.filter import Filter, Realisation
 
 if TYPE_CHECKING:
@@ -90,14 +90,14 @@ class PowerRealisation(Realisation):
                 f"{self.name} leaves '{law.name}' a direct feedthrough, but its law vanishes at "
                 "high frequency; use --realisation fitted or diffusive"
             )
-            raise ParameterError(msg)
+            raise ValidityError(msg)
         for order in (*law.numerator.exponents, *law.denominator.exponents):
             if not 0.0 <= order < 1.0:
                 msg = (
                     f"{self.name} realises orders between 0 and 1, '{law.name}' has {order:g}; "
                     "use --realisation fitted or diffusive"
                 )
-                raise ParameterError(msg)
+                raise ValidityError(msg)
         return self._side(law.numerator), self._side(law.denominator)
 
     def _side(self, powers: PowerSum) -> Side:

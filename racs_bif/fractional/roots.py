@@ -148,7 +148,7 @@ def _zeros(ch: Characteristic, ring: Annulus, above: float) -> Zeros:
             return zeros_in_rectangle(ch, low, high)
         except OnContourError as error:
             problem = error
-    msg = f"the region of the characteristic roots cannot be bounded: {problem}"
+    msg = f"the region of the characteristic roots cannot be bounded ({problem}); scale the model"
     raise ConvergenceError(msg)
 
 

@@ -124,7 +124,7 @@ def zeros_in_rectangle(ch: Characteristic, low: complex, high: complex) -> Zeros
 
 def _cut(ch: Characteristic, box: _Box, number: int) -> list[tuple[_Box, int]]:
     if box.radius < 1e-7:
-        msg = f"{number} roots near {np.exp(box.centre):.9g} cannot be told apart"
+        msg = f"{number} roots near {np.exp(box.centre):.9g} cannot be told apart; scale the model"
         raise ConvergenceError(msg)
     for fraction in _CUTS:
         first, second = box.halves(fraction)
@@ -133,7 +133,7 @@ def _cut(ch: Characteristic, box: _Box, number: int) -> list[tuple[_Box, int]]:
         except OnContourError:
             continue
         return [(first, inside), (second, number - inside)]
-    msg = f"roots near {np.exp(box.centre):.9g} cannot be separated"
+    msg = f"roots near {np.exp(box.centre):.9g} cannot be separated; scale the model"
     raise ConvergenceError(msg)
 
 

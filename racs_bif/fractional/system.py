@@ -83,6 +83,11 @@ class System:
         return dict(self.compiled.meta["units"])
 
     @property
+    def time_unit(self) -> str:
+        """Unit of the time; empty where it has none."""
+        return str(self.compiled.meta["time_unit"])
+
+    @property
     def outputs(self) -> tuple[str, ...]:
         """Names of the model's outputs."""
         return self.compiled.outputs
@@ -172,7 +177,8 @@ class System:
         )
         if not np.all(np.isfinite(self.exact.residual(X, p))):
             names = ", ".join(f"{n} = {x:g}" for n, x in zip(self.states, X, strict=False))
-            msg = f"model '{self.name}': the equations are not finite at the guess {names}"
+            told = f"the equations are not finite at the guess {names}"
+            msg = f"model '{self.name}': {told}; give another guess"
             raise ModelError(msg)
         return self.polish(X, p)
 
@@ -180,8 +186,8 @@ class System:
         """Return states (n,) of the exact equilibrium near X = (y, w)."""
         try:
             X = self.exact.equilibrium(X, p)
-        except ConvergenceError as error:
-            msg = f"model '{self.name}': {self._degenerate(X, p) or error}"
+        except ConvergenceError as inner:
+            msg = f"model '{self.name}': {self._degenerate(X, p) or inner}"
             raise ConvergenceError(msg) from None
         ny = len(self.states)
         return self.field.rest(X[:ny], X[ny:], p)

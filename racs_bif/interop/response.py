@@ -198,7 +198,7 @@ def frequencies(system: System, omega: ArrayLike | None, *, above_zero: bool = F
     at = np.atleast_1d(np.asarray(omega, dtype=float))
     usable = at.ndim == 1 and at.size and np.all(np.isfinite(at)) and at[0] >= 0.0
     if not usable or np.any(np.diff(at) <= 0.0):
-        msg = "omega is not a list of ascending frequencies; give finite ones from zero on, rad/s"
+        msg = "the frequencies omega must be finite and ascend from zero on, in rad/s"
         raise UsageError(msg)
     if above_zero and at[0] == 0.0:
         msg = "the element integrates: its gain at omega = 0 is infinite; begin above zero"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.errors import UsageError
+from racs_bif.units import SECONDS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,6 +43,8 @@ class RootLocus:
         The branch's special points; their `index` is a row.
     model : str
         Name of the model.
+    time_unit : str
+        Unit of the time; empty where it has none.
     """
 
     parameter: str
@@ -51,6 +54,7 @@ class RootLocus:
     kind: str
     special: tuple[SpecialPoint, ...]
     model: str
+    time_unit: str = SECONDS
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the loci as a table of complex columns, indexed by the parameter."""
@@ -115,6 +119,7 @@ def root_locus(branch: Branch) -> RootLocus:
     return RootLocus(
         parameter=name,
         unit=branch.system.unit(name),
+        time_unit=branch.system.time_unit,
         values=branch.parameter,
         eigenvalues=sorted_rows,
         kind=branch.kind,

@@ -186,7 +186,7 @@ def _disk(matrix: Matrix, shift: complex, count: int) -> _Disk:
             odd = shift.imag == 0.0 and factors.sign * (-1.0) ** size < 0.0
             return _Disk(shift, radius * (1.0 + _TINY), _upper(values, shift, radius), odd)
         shift += _ASIDE * radius
-    msg = "no shift found near which eigenvalues can be computed"
+    msg = "no eigenvalues can be computed, whatever the shift"
     raise ConvergenceError(msg)
 
 

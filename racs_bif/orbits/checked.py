@@ -83,11 +83,13 @@ def _call(
     except RacsBifError:
         raise
     except Exception as error:  # the user's code may raise anything
-        raise ModelError(f"the {what} raised {type(error).__name__}: {error}") from error
+        raise ModelError(
+            f"the {what} raised {type(error).__name__} ({error}): make it return numbers there"
+        ) from error
     if values.shape != shape or values.dtype.kind not in "fiu":
         raise ModelError(
             f"the {what} returned {values.dtype} values shaped {values.shape}, "
-            f"but real values shaped {shape} are needed"
+            f"but must return real values shaped {shape}"
         )
     return values.astype(float, copy=False)
 

@@ -259,7 +259,10 @@ def _mode(problem: CollocationProblem, z: Array, multiplier: float) -> Array:
     points, singularity = ring.solve(np.zeros((count, size, 1)), np.ones((1, 1)))
     starts = points[None, :, :, 0]
     if abs(singularity[0, 0]) > _SINGULAR * float(np.abs(starts).max()):
-        raise UsageError(f"this orbit has no multiplier {multiplier:g}: it is no period doubling")
+        raise UsageError(
+            f"this orbit has no multiplier {multiplier:g}, it is no period doubling: "
+            "start from a PD point"
+        )
     stages = equations.stages.solve(equations.from_starts(starts))[0]
     inner = starts[0][:, None] * g.inner_start[:, None] + g.inner @ stages
     nodes = np.concatenate((starts[0][:, None], inner), axis=1)

@@ -85,7 +85,9 @@ def exact_crossing(
         k = 0 if side * sides[0] > 0.0 else 1
         ends[k], known[k], sides[k] = z, found, side
         sides[1 - k] *= 0.5
-    raise ConvergenceError("the crossing of the unit circle was not located")
+    raise ConvergenceError(
+        "the orbit whose multiplier is on the unit circle was not located: give nearer orbits"
+    )
 
 
 def _followed(

@@ -165,9 +165,7 @@ class Integrator:
             If the right-hand side raises or returns a wrong shape.
         """
         if not (np.all(np.isfinite(starts)) and np.isfinite(period) and np.isfinite(active)):
-            raise ConvergenceError(
-                "the integrator was asked to start from a value that is not finite"
-            )
+            raise ConvergenceError("the orbit is not finite where the integrator was to start")
         if period <= 0.0:
             raise ConvergenceError(f"the period became {period:.6g}, which is not positive")
         p = self.path.vector(active)

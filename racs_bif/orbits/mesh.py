@@ -37,7 +37,7 @@ class Mesh:
     def __post_init__(self) -> None:
         nodes = self.nodes
         if nodes.ndim != 1 or len(nodes) < 2 or nodes[0] != 0.0 or nodes[-1] != 1.0:
-            raise UsageError("a mesh has nodes from 0 to 1")
+            raise UsageError("the nodes of a mesh must be a list from 0 to 1")
         if not np.all(np.diff(nodes) > 0.0):
             raise UsageError("the nodes of a mesh must rise: two of them coincide or are swapped")
         if self.segments < 1 or (len(nodes) - 1) % self.segments:

@@ -19,6 +19,7 @@ from racs_bif.orbits.piecewise import Piecewise
 from racs_bif.orbits.polishing import polished
 from racs_bif.orbits.twisted_solver import kernel
 from racs_bif.orbits.variational import Variational
+from racs_bif.units import SECONDS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -57,6 +58,8 @@ class PhaseResponse:
         remembers a kick for ever, and has a phase response in this sense only as a limit.
     units : dict of str to str
         Units of the states, where they are known.
+    time_unit : str
+        Unit of the time; empty where it has none.
     """
 
     states: tuple[str, ...]
@@ -67,6 +70,7 @@ class PhaseResponse:
     error: float
     realised: bool = False
     units: Mapping[str, str] = field(default_factory=dict)
+    time_unit: str = SECONDS
 
     @property
     def radians(self) -> Array:

@@ -123,7 +123,7 @@ def hopf_seed(
     """
     state, value = np.split(np.asarray(point, dtype=float), [-1])
     if not (np.isfinite(omega) and omega > 0.0):
-        raise UsageError(f"a Hopf point has a positive frequency, not {omega!r}")
+        raise UsageError(f"a Hopf point must have a positive frequency, not {omega!r}")
     if not len(state) == len(q) == len(field.states):
         raise UsageError(
             f"a Hopf point of {len(field.states)} states needs as many components of the "
@@ -187,7 +187,7 @@ def samples_seed(field: VectorField, times: ArrayLike, profile: ArrayLike, value
         raise UsageError("the samples of an orbit must be finite and their times must rise")
     ranges = np.ptp(x, axis=1)
     if ranges.max() == 0.0:
-        raise UsageError("the samples do not move: this is an equilibrium, not an orbit")
+        raise UsageError("the samples of an orbit must move, these are an equilibrium")
     s = (t - t[0]) / (t[-1] - t[0])
     closed = x - np.outer(x[:, -1] - x[:, 0], s)
     closed[:, -1] = closed[:, 0]

@@ -88,7 +88,9 @@ def null_direction(
         size = float(np.linalg.norm(step / magnitudes))
         found = step / magnitudes / size
     if size < 1.0 / singular * before:
-        raise UsageError("no other branch of periodic orbits crosses this one here")
+        raise UsageError(
+            "no other branch of periodic orbits crosses this one here: start from a BPC point"
+        )
     return np.asarray(found * magnitudes * _AMPLITUDE * np.sqrt(len(z)))
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from racs_bif.markup import with_unit
 from racs_bif.plots.style import BLACK, VERMILION
 from racs_bif.plots.text import symbol
 from racs_bif.plots.text import unit as in_print
@@ -34,9 +35,10 @@ _CURVES: Final[dict[str, Any]] = {
     "ns": (0, (4.0, 1.0, 1.0, 1.0, 1.0, 1.0)),
 }
 _TITLES: Final = {
-    "damping": r"rightmost root, Re $s$ [1/s]",
-    "lyapunov": r"largest Lyapunov exponent [1/s]",
+    "damping": r"rightmost root, Re $s$",
+    "lyapunov": r"largest Lyapunov exponent",
 }
+"""Of maps of rates."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,8 @@ def scale_of(charts: list[Chart]) -> Scale | None:
     every = np.concatenate(omegas)
     low, high = float(every.min()), float(every.max())
     margin = max(0.0, 0.5 * (0.1 * high - (high - low)))
-    return Scale(low - margin, high + margin, r"frequency on the boundary, $\omega$ [rad/s]")
+    title = with_unit(r"frequency on the boundary, $\omega$", charts[0].system.frequency_unit)
+    return Scale(low - margin, high + margin, title)
 
 
 def _numbers(every: Reals, charts: list[Chart]) -> Scale:
@@ -116,8 +119,10 @@ def _numbers(every: Reals, charts: list[Chart]) -> Scale:
 def _title(chart: Chart) -> str:
     assert chart.map is not None  # as the caller knows
     title = _TITLES.get(chart.map.quantity)
-    if title is not None or chart.map.sweep is None:
-        return title or ""
+    if title is not None:
+        return with_unit(title, chart.map.unit(chart.system))
+    if chart.map.sweep is None:
+        return ""
     unit = in_print(chart.map.unit(chart.system))
     return f"amplitude of {symbol(chart.map.sweep.watch)}" + (f" [{unit}]" if unit else "")
 

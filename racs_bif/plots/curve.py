@@ -77,7 +77,8 @@ def picture(curves: Sequence[Branch]) -> Figure:
 def _check(curves: Sequence[Branch]) -> None:
     planes = {curve.parameters for curve in curves}
     if len(planes) != 1 or len(next(iter(planes))) != 2:
-        msg = f"curves in one plane of two parameters are wanted, not in {sorted(planes)}"
+        told = " and ".join(sorted("-".join(plane) for plane in planes)) or "none"
+        msg = f"curves must share one plane of two parameters, not {told}; draw a plane at a time"
         raise UsageError(msg)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from racs_bif.markup import with_unit
 from racs_bif.plots.style import BLACK, BLUE, COLUMN, SIZE, VERMILION, style
 from racs_bif.plots.text import axis_label, symbol
 
@@ -59,7 +60,7 @@ def draw(history: TimeHistory, *names: str, ax: Axes | None = None) -> Axes:
                 label=symbol(name),
             )
         units = {history.units[name] for name in names}
-        ax.set_xlabel("time [s]")
+        ax.set_xlabel(with_unit("time", history.system.time_unit))
         if len(names) == 1:
             ax.set_ylabel(axis_label(names[0], history.units[names[0]]))
         else:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from racs_bif.errors import UsageError, nearest
+from racs_bif.markup import with_unit
 from racs_bif.plots.orbit_multipliers import draw_circle, draw_multipliers, mark_points
 from racs_bif.plots.orbit_profiles import (
     check_orbits,
@@ -18,6 +19,7 @@ from racs_bif.plots.orbit_profiles import (
 )
 from racs_bif.plots.style import BLUE, COLUMN, SIZE, style
 from racs_bif.plots.text import axis_label, symbol
+from racs_bif.units import after
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,7 +68,7 @@ def draw_period(branch: Branch, *, ax: Axes | None = None) -> Axes:
             seen.add(part.kind)
         name = branch.parameters[0]
         ax.set_xlabel(axis_label(name, branch.system.unit(name)))
-        ax.set_ylabel("period [s]")
+        ax.set_ylabel(with_unit("period", branch.system.time_unit))
         ax.margins(x=0.02, y=0.08)
         ax.legend(loc="best")
         mark_points(branch, ax, periods)
@@ -146,7 +148,7 @@ def orbit_picture(branch: Branch, name: str | None = None, state: str | None = N
             ax.set_ylabel(axis_label(shown, branch.system.unit(shown)))
             ax.margins(x=0.0, y=0.1)
             ax.label_outer()
-        strips[-1].set_xlabel("time [s]")
+        strips[-1].set_xlabel(with_unit("time", branch.system.time_unit))
         left.align_ylabels()
         top, bottom = right.subplots(2, 1)
         draw_phase(branch, (point.name,), plane, ax=top)
@@ -155,7 +157,9 @@ def orbit_picture(branch: Branch, name: str | None = None, state: str | None = N
             legend.remove()
         draw_circle(branch, point.name, ax=bottom)
         where = ", ".join(f"{symbol(k)} = {v:.6g}" for k, v in point.parameters.items())
-        figure.suptitle(f"{where}, period {point.period:.7g} s", fontsize=8.0)
+        figure.suptitle(
+            f"{where}, period {point.period:.7g}{after(branch.system.time_unit)}", fontsize=8.0
+        )
     return figure
 
 

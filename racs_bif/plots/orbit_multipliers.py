@@ -47,7 +47,7 @@ def draw_circle(branch: Branch, name: str | None = None, *, ax: Axes | None = No
     row = branch.spectrum[point.index]
     values = row[~np.isnan(row)]
     if not len(values):
-        msg = f"{point.name} of {branch.name} has no multipliers: it is no orbit"
+        msg = f"{point.name} of {branch.name} has no multipliers; take a point that is an orbit"
         raise UsageError(msg)
     with style():
         ax = ax or new_axes()
@@ -88,7 +88,7 @@ def draw_multipliers(branch: Branch, *, ax: Axes | None = None) -> Axes:
     check_orbits(branch)
     moduli = np.abs(branch.spectrum[:, 1:])
     if not np.isfinite(moduli).any():
-        msg = f"{branch.name} has no multipliers"
+        msg = f"{branch.name} has no multipliers; take a branch of shooting or collocation"
         raise UsageError(msg)
     known = np.where(np.isfinite(moduli), moduli, -1.0)
     largest = -np.sort(-known, axis=1)[:, :_MOST]

@@ -131,7 +131,7 @@ def check_orbits(branch: Branch) -> None:
         If it is another.
     """
     if branch.kind != "orbit":
-        msg = f"{branch.name} is a branch of kind '{branch.kind}', not of orbits"
+        msg = f"{branch.name} must be a branch of orbits, not of kind '{branch.kind}'"
         raise UsageError(msg)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from racs_bif.errors import UsageError, nearest
+from racs_bif.markup import with_unit
 from racs_bif.plots.style import BLACK, BLUE, COLUMN, SIZE, style
 from racs_bif.plots.text import axis_label, symbol
 
@@ -61,8 +62,8 @@ def draw(response: PhaseResponse, name: str | None = None, *, ax: Axes | None = 
         ax.set_zorder(behind.get_zorder() + 1)
         ax.patch.set_visible(False)
         ax.tick_params(right=False)
-        ax.set_xlabel("time of the kick [s]")
-        ax.set_ylabel(_label(name, unit))
+        ax.set_xlabel(with_unit("time of the kick", response.time_unit))
+        ax.set_ylabel(_label(name, unit, response.time_unit))
         ax.margins(x=0.0, y=0.08)
     return ax
 
@@ -110,7 +111,8 @@ def _place(response: PhaseResponse, name: str | None) -> int:
     return response.states.index(name)
 
 
-def _label(name: str, unit: str) -> str:
-    """Return the advance over a kick as an axis label; the model says what time is, in seconds."""
-    per = f"s/({unit})" if unit and not unit.isalpha() else f"s/{unit}" if unit else "s"
-    return rf"advance $\partial t / \partial${symbol(name)} [{per}]"
+def _label(name: str, unit: str, time: str) -> str:
+    """Return the advance over a kick as an axis label, in the model's time over the state."""
+    below = f"({unit})" if unit and not unit.isalpha() else unit
+    per = f"{time or 1}/{below}" if below else time
+    return with_unit(rf"advance $\partial t / \partial${symbol(name)}", per)

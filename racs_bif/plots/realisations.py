@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import cycle
 from typing import TYPE_CHECKING
 
+from racs_bif.markup import with_unit
 from racs_bif.plots.style import COLUMN, style
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def _draw(table: RealisationTable, ax: Axes) -> None:
         )
     ax.set_xlim(table.omega[0], table.omega[-1])
     ax.set_ylim(1e-8, 10.0)
-    ax.set_xlabel("frequency [rad/s]")
+    ax.set_xlabel(with_unit("frequency", table.system.frequency_unit))
     ax.set_ylabel("relative error of the law")
     figure = ax.figure
     figure.legend(loc="outside upper center", ncols=2, columnspacing=1.2)

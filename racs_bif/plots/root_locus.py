@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from racs_bif.markup import with_unit
 from racs_bif.plots.placing import Label, place
 from racs_bif.plots.style import BLACK, COLUMN, style
 from racs_bif.plots.text import axis_label, symbol
+from racs_bif.units import frequency_unit, rate_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,8 +94,8 @@ def _draw(locus: RootLocus, window: Window | None, ax: Axes) -> None:
     ax.set_xlim(left, right)
     ax.set_ylim(low, high)
     orbit = locus.kind == "orbit"
-    ax.set_xlabel(r"Re $\mu$" if orbit else "Re s [1/s]")
-    ax.set_ylabel(r"Im $\mu$" if orbit else "Im s [rad/s]")
+    ax.set_xlabel(r"Re $\mu$" if orbit else with_unit("Re s", rate_unit(locus.time_unit)))
+    ax.set_ylabel(r"Im $\mu$" if orbit else with_unit("Im s", frequency_unit(locus.time_unit)))
     bar = ax.figure.colorbar(lines, ax=ax, pad=0.02, aspect=30)
     bar.set_label(axis_label(locus.parameter, locus.unit))
     ax.legend(loc="best", handlelength=1.0)

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from racs_bif.markup import with_unit
 from racs_bif.plots.style import SIZE, VERMILION, style
+from racs_bif.units import rate_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,6 +72,6 @@ def _draw(spectrum: Spectrum, ax: Axes) -> None:
     ax.plot(values.real, values.imag, "x", ms=3.5, mec=VERMILION, mew=0.9, label="realisation")
     ax.set_xlim(low - 0.05 * width, right)
     ax.set_ylim(-height, height)
-    ax.set_xlabel("Re s [1/s]")
-    ax.set_ylabel("Im s [rad/s]")
+    ax.set_xlabel(with_unit("Re s", rate_unit(spectrum.system.time_unit)))
+    ax.set_ylabel(with_unit("Im s", spectrum.system.frequency_unit))
     ax.legend(loc="best")

@@ -13,6 +13,7 @@ from racs_bif.plots.panels import common_legend, letter, panels
 from racs_bif.plots.plate import plain
 from racs_bif.plots.style import SIZE, style
 from racs_bif.results.stability import merged, stretches
+from racs_bif.units import after
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -139,6 +140,8 @@ def picture(
 def describe(case: Case) -> str:
     """Say in a sentence or two what branches and simulations of a case show."""
     name, unit = case.sweep.parameter, case.sweep.system.unit(case.sweep.parameter)
+    seconds = after(case.sweep.system.time_unit)
+    turning = after(case.sweep.system.frequency_unit)
     texts = []
     for branch in case.diagram:
         for point in branch.special if branch.kind == "equilibrium" and branch.connected else ():
@@ -147,13 +150,13 @@ def describe(case: Case) -> str:
                 texts.append(
                     f"{'' if point.exact is None else 'exact '}Hopf point {point.name} at {name} = "
                     f"{_plain_number(place.parameters[name])} {unit}".rstrip()
-                    + f", {place.omega:.4g} rad/s, {point.criticality}"
+                    + f", {place.omega:.4g}{turning}, {point.criticality}"
                 )
         if branch.kind == "orbit":
             x, period = _clean(branch), branch.measures["period"]
             texts.append(
                 f"{branch.name} followed from {x[0]:.5g} to {x[-1]:.5g}, its period from "
-                f"{period[0]:.3g} to {period[-1]:.3g} s ({_stability(branch)})"
+                f"{period[0]:.3g} to {period[-1]:.3g}{seconds} ({_stability(branch)})"
             )
     texts = texts or [f"no Hopf point on the branch near straight running over all {name} shown"]
     ways = [f"{_WAYS[way]} {low:.4g} to {high:.4g}" for low, high, way in case.sweep.stretches]
@@ -161,7 +164,7 @@ def describe(case: Case) -> str:
         ways = [*ways[:_MANY], f"and {len(ways) - _MANY} more changes"]
     return (
         f"{plain(case.title)}: {'; '.join(texts)}. Simulations from a small disturbance, after "
-        f"{case.sweep.duration:g} s: {', '.join(ways)}."
+        f"{case.sweep.duration:g}{seconds}: {', '.join(ways)}."
     )
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from racs_bif.markup import with_unit
 from racs_bif.plots.diagram import LOOKS, MARKERS
 from racs_bif.plots.style import VERMILION
 from racs_bif.report.names import axis_label, plain, symbol, unit
@@ -13,6 +14,7 @@ from racs_bif.report.vehicle import geometry, yaw_angle
 from racs_bif.results.special import OPERATING
 from racs_bif.results.stability import merged, stretches
 from racs_bif.results.summary import Json, to_json
+from racs_bif.units import frequency_unit, rate_unit
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -63,6 +65,12 @@ def page_data(diagram: Diagram, shown: str) -> dict[str, Json]:
         "names": names,
         "shown": shown,
         "states": list(system.states),
+        "axes": {
+            "time": with_unit("<i>t</i>", system.time_unit),
+            "rate": with_unit("Re", rate_unit(system.time_unit)),
+            "frequency": with_unit("Im", frequency_unit(system.time_unit)),
+        },
+        "time_unit": system.time_unit,
         "vehicle": vehicle,
         "begins": _begins(diagram),
     }

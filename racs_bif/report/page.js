@@ -30,7 +30,7 @@ function tell({ branch, orbit }) {
   const label = branch.special.filter((p) => p.index === index).map((p) => p.name).join(", ");
   const told = [`point ${index + 1} of ${horizontalOf(branch).length}${label ? ` (${label})` : ""}`, at(index)];
   told.push(unstable < 0 ? "stability not known" : unstable ? `unstable (${unstable})` : "stable");
-  if (branch.curves.period) told.push(`period ${number(branch.curves.period[0][index], 5)} s`);
+  if (branch.curves.period) told.push(`period ${number(branch.curves.period[0][index], 5)} ${report.time_unit}`.trim());
   if (orbit && orbit.index !== index) told.push(`orbit shown: the nearest kept, at ${at(orbit.index)}`);
   find("told").textContent = told.join(" · ");
 }
@@ -71,7 +71,7 @@ async function show() {
   }
   swing(now);
   await moveRing(find("diagram"), report, shown, quantity());
-  await drawSpectrum(find("spectrum"), now.branch, shown.index);
+  await drawSpectrum(find("spectrum"), now.branch, shown.index, report.axes);
   if (!moves) return;
   await drawHistory(boxes.history, report, now.orbit, find("state").value, shown.share);
   await drawPortrait(boxes.portrait, report, now.orbit, plane(), shown.share);

@@ -7,9 +7,9 @@ function complexText([re, im]) {
   return im === 0 ? real : `${real} ${im < 0 ? "−" : "+"} ${Math.abs(im).toPrecision(4)} i`;
 }
 
-function drawSpectrum(box, branch, index) {
+function drawSpectrum(box, branch, index, axes) {
   const roots = branch.spectrum[index];
-  return branch.cycles ? drawMultipliers(box, roots) : drawEigenvalues(box, branch, roots);
+  return branch.cycles ? drawMultipliers(box, roots) : drawEigenvalues(box, branch, roots, axes);
 }
 
 function rootTrace(roots, bad, inner) {
@@ -38,14 +38,14 @@ function eigenvalueWindow(branch) {
   return { x: [-1.15 * left, 1.15 * Math.max(right, 0.35 * left)], y: [-1.2 * high, 1.2 * high] };
 }
 
-function drawEigenvalues(box, branch, roots) {
+function drawEigenvalues(box, branch, roots, axes) {
   const view = eigenvalueWindow(branch);
   const beyond = roots.filter((r) => r[0] < view.x[0]).length;
   const note = beyond ? `${beyond} more farther left` : "";
   return Plotly.react(box, [rootTrace(roots, (r) => r[0] > 0, "x-thin-open")], {
-    ...small("eigenvalues", "Re [1/s]", "Im [rad/s]"),
-    xaxis: { ...AXIS, range: view.x, title: { text: "Re [1/s]", standoff: 4 } },
-    yaxis: { ...AXIS, range: view.y, title: { text: "Im [rad/s]", standoff: 4 } },
+    ...small("eigenvalues", axes.rate, axes.frequency),
+    xaxis: { ...AXIS, range: view.x, title: { text: axes.rate, standoff: 4 } },
+    yaxis: { ...AXIS, range: view.y, title: { text: axes.frequency, standoff: 4 } },
     shapes: [{ type: "line", x0: 0, x1: 0, yref: "paper", y0: 0, y1: 1, line: { color: "#333", width: 1.2 }, layer: "between" }],
     annotations: remark(note),
   }, QUIET);
@@ -113,7 +113,7 @@ function line(x, y) {
 function drawHistory(box, report, orbit, state, share) {
   const column = orbit.states[state];
   const now = [share * periodOf(orbit)];
-  const layout = small("", "<i>t</i> [s]", report.names[state].axis);
+  const layout = small("", report.axes.time, report.names[state].axis);
   layout.xaxis.range = [0, periodOf(orbit)];
   return Plotly.react(box, [line(orbit.times, column), mark(now, [sampled(orbit, column, share)])], layout, QUIET);
 }

@@ -7,9 +7,11 @@ import shlex
 from html import escape
 from typing import TYPE_CHECKING
 
+from racs_bif.markup import with_unit
 from racs_bif.report.names import symbol, unit
 from racs_bif.results.special import OPERATING
 from racs_bif.results.stability import describe_stability
+from racs_bif.units import after
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -28,7 +30,9 @@ def special_table(diagram: Diagram) -> str:
     for name in names:
         head = _with_unit(name, system)
         heads += [head, f"exact {symbol(name)}", f"shift of {symbol(name)}"]
-    heads += ["<i>ω</i> [rad/s]", "exact <i>ω</i>", "shift of <i>ω</i>", "period [s]"]
+    omega = escape(with_unit("@", system.frequency_unit)).replace("@", "<i>ω</i>")
+    period = escape(with_unit("period", system.time_unit))
+    heads += [omega, "exact <i>ω</i>", "shift of <i>ω</i>", period]
     heads += ["<i>l</i><sub>1</sub>", "exact <i>l</i><sub>1</sub>", ""]
     rows = [
         _special_row(point, branch, names, number)
@@ -75,8 +79,8 @@ def origin_table(diagram: Diagram, command: Sequence[str] | None) -> str:
     else:
         settings = ", ".join(f"{name} {value:g}" for name, value in how.settings.items())
         told = (
-            f"{how.name}, {how.states} states, {how.band[0]:g} to {how.band[1]:g} rad/s, largest "
-            f"error there {100.0 * how.error:.2g} %"
+            f"{how.name}, {how.states} states, {how.band[0]:g} to {how.band[1]:g}"
+            f"{after(system.frequency_unit)}, largest error there {100.0 * how.error:.2g} %"
         )
         rows.append(("realisation", escape(f"{told}; {settings}" if settings else told)))
     rows.append(("equations", _code(system.equations[:16]) if system.equations else "-"))

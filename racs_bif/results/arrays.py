@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from racs_bif.units import rate_unit
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -46,7 +48,7 @@ def history_dataset(history: TimeHistory) -> xr.Dataset:
         name: ("time", history.column(name), {"units": unit})
         for name, unit in history.units.items()
     }
-    times = {"time": ("time", history.times, {"units": "s"})}
+    times = {"time": ("time", history.times, {"units": history.system.time_unit})}
     attributes = _attributes(history.system) | {
         "operator": history.operator,
         "method": history.method,
@@ -83,8 +85,8 @@ def chart_dataset(chart: Chart, shape: tuple[int, int]) -> xr.Dataset:
         )
     data: dict[str, Any] = {"unstable": (names, found.unstable)}
     if found.quantity == "damping":
-        data["sigma"] = (names, found.sigma, {"units": "1/s"})
-        data["omega"] = (names, found.omega, {"units": "rad/s"})
+        data["sigma"] = (names, found.sigma, {"units": rate_unit(chart.system.time_unit)})
+        data["omega"] = (names, found.omega, {"units": chart.system.frequency_unit})
     if found.sweep is not None:
         unit = found.unit(chart.system)
         data[found.quantity] = (names, found.sweep.value, {"units": unit})

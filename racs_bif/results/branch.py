@@ -183,7 +183,7 @@ class Branch:
         first: Reals = self.values[:, 0]
         return first
 
-    def __getitem__(self, name: str) -> SpecialPoint:
+    def __getitem__(self, name: str | int) -> SpecialPoint:
         """Return a special point by its name.
 
         Raises
@@ -191,11 +191,14 @@ class Branch:
         UsageError
             If there is none; the message names those there are.
         """
+        if not isinstance(name, str):
+            msg = f"branch {self.name} is asked for a special point by its name, not by {name!r}"
+            raise UsageError(f"{msg}; take .values[{name!r}] or .column(NAME)[{name!r}] for a row")
         for point in self.special:
             if point.name == name:
                 return point
-        there = nearest(name, [point.name for point in self.special])
-        msg = f"branch {self.name} has no special point '{name}'; {there}"
+        hint = nearest(name, [point.name for point in self.special])
+        msg = f"branch {self.name} has no special point '{name}'; {hint}"
         raise UsageError(msg)
 
     def column(self, quantity: str) -> Reals:

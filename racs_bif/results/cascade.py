@@ -76,7 +76,8 @@ class Cascade:
         """
         values = self.values
         if len(values) < 3:
-            msg = "three doublings at least tell where a cascade ends; follow it deeper"
+            told = f"{len(values)} of 3 doublings do not tell where a cascade ends"
+            msg = f"{told}; follow it to depth=3 or deeper"
             raise UsageError(msg)
         ends = values[1:] + np.diff(values) / (FEIGENBAUM - 1.0)
         return float(ends[-1]), float(abs(ends[-1] - ends[-2]))

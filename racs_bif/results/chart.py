@@ -282,7 +282,8 @@ class Chart:
         place = np.array([[values[first], values[second]]])
         low, high = np.array(self.spans).T
         if not bool(np.all((place >= low) & (place <= high))):
-            msg = f"{first} = {values[first]:g}, {second} = {values[second]:g} is outside the chart"
+            where = f"{first} = {values[first]:g}, {second} = {values[second]:g}"
+            msg = f"{where} is outside the chart; compute it over wider spans"
             raise UsageError(msg)
         return int(self.unstable_on(place)[0])
 

@@ -92,7 +92,7 @@ def curve_of(
     if set(branch.parameters) != set(plane):
         msg = (
             f"'{branch.name}' is a curve in {' and '.join(branch.parameters)}, the chart's plane "
-            f"is that of {plane[0]} and {plane[1]}"
+            f"is that of {plane[0]} and {plane[1]}; leave it out"
         )
         raise UsageError(msg)
     for name, value in branch.system.parameters.items():
@@ -100,7 +100,10 @@ def curve_of(
         if name in plane or name in loose:
             continue
         if abs(here - value) > _HELD * max(abs(here), abs(value)):
-            msg = f"'{branch.name}' was computed at {name} = {value:g}, the chart at {here:g}"
+            msg = (
+                f"'{branch.name}' was computed at {name} = {value:g}, the chart at {here:g}; "
+                f"compute both at one {name}"
+            )
             raise UsageError(msg)
     if kind is None:
         told = f"{branch.name} {branch.method}".lower()

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from racs_bif.results.same import same
+from racs_bif.units import rate_unit
 
 if TYPE_CHECKING:
     from racs_bif.results.provenance import SystemInfo
@@ -114,4 +115,5 @@ class ChartMap:
         """Return the unit of `shown`."""
         if self.quantity == "amplitude" and self.sweep is not None:
             return system.unit(self.sweep.watch)
-        return {"damping": "1/s", "lyapunov": "1/s"}.get(self.quantity, "")
+        rates = self.quantity in {"damping", "lyapunov"}
+        return rate_unit(system.time_unit) if rates else ""

@@ -8,6 +8,7 @@ import numpy as np
 
 from racs_bif.results.chart_map import STATUS, ChartMap, SweepMap
 from racs_bif.results.tree import Attribute, Node, Variable, real_array
+from racs_bif.units import rate_unit
 
 if TYPE_CHECKING:
     from racs_bif.results.chart import Chart
@@ -29,8 +30,12 @@ def encode_map(chart: Chart, chart_map: ChartMap) -> Node:
         _AXES, chart_map.unstable, {"long_name": "number of unstable roots; -1 unknown, -2 none"}
     )
     if chart_map.quantity == "damping":
-        node.variables["sigma"] = Variable(_AXES, chart_map.sigma, {"units": "1/s"})
-        node.variables["omega"] = Variable(_AXES, chart_map.omega, {"units": "rad/s"})
+        node.variables["sigma"] = Variable(
+            _AXES, chart_map.sigma, {"units": rate_unit(chart.system.time_unit)}
+        )
+        node.variables["omega"] = Variable(
+            _AXES, chart_map.omega, {"units": chart.system.frequency_unit}
+        )
     if chart_map.sweep is not None:
         node.groups["sweep"] = _encode_sweep(chart_map.sweep, chart_map.unit(chart.system))
     return node

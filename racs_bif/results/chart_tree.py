@@ -132,7 +132,9 @@ def _encode_boundary(chart: Chart, boundary: ChartBoundary) -> Node:
         }
     )
     node.variables = _places(chart, _POINT, boundary.values) | _places(chart, "line", boundary.line)
-    node.variables["omega"] = Variable((_POINT,), boundary.omega, {"units": "rad/s"})
+    node.variables["omega"] = Variable(
+        (_POINT,), boundary.omega, {"units": chart.system.frequency_unit}
+    )
     node.variables["l1"] = Variable(
         (_POINT,), boundary.l1, {"long_name": "first Lyapunov coefficient"}
     )

@@ -21,6 +21,7 @@ from racs_bif.results.tree import (
     words,
     words_array,
 )
+from racs_bif.units import SECONDS
 
 
 def decode_branch(node: Node) -> Branch:
@@ -96,6 +97,7 @@ def decode_system(node: Node) -> SystemInfo:
         realisation=realisation,
         loaded=str(node.attributes.get("loaded", "")),
         equations=str(node.attributes.get("equations", "")),
+        time_unit=str(node.attributes.get("time_unit", SECONDS)),
     )
 
 

@@ -15,6 +15,7 @@ from racs_bif.results.tree import (
     complex_variable,
     words_variable,
 )
+from racs_bif.units import SECONDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -87,6 +88,8 @@ def encode_system(system: SystemInfo) -> Node:
             "version": system.version,
             "loaded": system.loaded,
             "equations": system.equations,
+            # left out where it is the one of all files before there was a choice
+            **({} if system.time_unit == SECONDS else {"time_unit": system.time_unit}),
             **_listed("states", system.states),
             **_listed("notes", system.notes),
         }
@@ -106,7 +109,7 @@ def encode_system(system: SystemInfo) -> Node:
                 "error": how.error,
                 **{f"{SETTING}{name}": value for name, value in how.settings.items()},
             },
-            {"band": Variable(("end",), _numbers(how.band), {"units": "rad/s"})},
+            {"band": Variable(("end",), _numbers(how.band), {"units": system.frequency_unit})},
         )
     return node
 
@@ -156,7 +159,7 @@ def _encode_profile(profile: Profile, system: SystemInfo) -> Node:
     attributes = _listed("names", profile.names) | _listed("units", units)
     return Node(
         variables={
-            TIME: Variable((TIME,), profile.times, {"units": "s"}),
+            TIME: Variable((TIME,), profile.times, {"units": system.time_unit}),
             "states": Variable((TIME, "state"), profile.states, attributes),
         }
     )

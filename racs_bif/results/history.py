@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from racs_bif.errors import UsageError, nearest
 from racs_bif.results.same import same
+from racs_bif.units import after
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -105,8 +106,9 @@ class TimeHistory:
 
     def __repr__(self) -> str:
         """Return one line: of what, how long, and how it was computed."""
+        end = f"{self.times[-1]:g}{after(self.system.time_unit)}"
         return (
-            f"<time history of {self.system.model}: {len(self)} samples to {self.times[-1]:g} s, "
+            f"<time history of {self.system.model}: {len(self)} samples to {end}, "
             f"{self.operator} operator by {self.method}, history {self.history}>"
         )
 

@@ -30,7 +30,7 @@ def encode_history(history: TimeHistory) -> Node:
         "extrapolated": int(history.extrapolated),
         "early": int(history.early),
     }
-    node.variables[TIME] = Variable((TIME,), history.times, {"units": "s"})
+    node.variables[TIME] = Variable((TIME,), history.times, {"units": history.system.time_unit})
     states = dict(zip(history.state_names, history.states.T, strict=True))
     for role, columns in zip(_ROLES, (states, history.outputs, history.inputs), strict=True):
         for place, (name, column) in enumerate(columns.items()):

@@ -6,6 +6,8 @@ import hashlib
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING
 
+from racs_bif.units import SECONDS, frequency_unit
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -65,6 +67,8 @@ class SystemInfo:
         empty for one that was made in Python.
     equations : str
         Digest of the model's equations, by which one that was changed since is known.
+    time_unit : str
+        Unit of the time; empty where it has none.
     """
 
     model: str
@@ -79,11 +83,17 @@ class SystemInfo:
     version: str = ""
     loaded: str = ""
     equations: str = ""
+    time_unit: str = SECONDS
+
+    @property
+    def frequency_unit(self) -> str:
+        """Unit of angular frequencies; empty where the time has no unit."""
+        return frequency_unit(self.time_unit)
 
     def unit(self, quantity: str) -> str:
         """Return the unit of a state, output, parameter or measure; empty where there is none."""
         if quantity == "period":
-            return "s"
+            return self.time_unit
         return self.units.get(quantity.removeprefix("max ").removeprefix("min "), "")
 
 
@@ -119,6 +129,7 @@ def describe(system: System) -> SystemInfo:
         version=__version__,
         loaded=system.loaded,
         equations=equations_digest(system),
+        time_unit=system.time_unit,
     )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from racs_bif.markup import card, paragraph, table, with_unit
+from racs_bif.units import SECONDS, after, frequency_unit
 
 if TYPE_CHECKING:
     from racs_bif.results.branch import Branch
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from racs_bif.results.provenance import SystemInfo
     from racs_bif.results.special import SpecialPoint
 
-_UNITS: Final = {"omega": "rad/s", "period": "s"}
 _MOST_NUMBERS: Final = 8
 """Numbers of an array that are printed; of a longer one, its shape is."""
 
@@ -32,7 +32,7 @@ def point_card(point: SpecialPoint) -> str:
     rows += [(with_unit(n, units.get(n, "")), v, None) for n, v in point.state.items()]
     for name, found in point.data.items():
         solved = getattr(exact, name, None) if name in {"omega", "l1"} else None
-        unit = _UNITS.get(name, units.get(name.removeprefix("max ").removeprefix("min "), ""))
+        unit = units.get(name) or units.get(name.removeprefix("max ").removeprefix("min "), "")
         rows.append((with_unit(name, unit), _value(found), solved))
     place = f" on {point.branch}" if point.branch else ""
     head = ("", "value", "on the exact operator")
@@ -86,7 +86,8 @@ def chart_card(chart: Chart) -> str:
         (b.kind, len(b), b.closed, *_range(b.omega), ", ".join(p.label for p in b.points))
         for b in chart.boundaries
     ]
-    head = ("boundary", "points", "closed", "omega from [rad/s]", "to", "marked")
+    omega = with_unit("omega from", chart.system.frequency_unit)
+    head = ("boundary", "points", "closed", omega, "to", "marked")
     return card(
         f"stability chart over {' and '.join(chart.parameters)}, {chart.operator} operator",
         paragraph(_of(chart.system)),
@@ -103,8 +104,9 @@ def history_card(history: TimeHistory) -> str:
     for name, unit in history.units.items():
         low, high = _range(history.column(name))
         rows.append((with_unit(name, unit), low, high, history.errors.get(name)))
+    end = f"{history.times[-1]:g}{after(history.system.time_unit)}"
     return card(
-        f"time history to {history.times[-1]:g} s, {len(history)} samples",
+        f"time history to {end}, {len(history)} samples",
         paragraph(_of(history.system)),
         paragraph(f"{history.operator} operator by {history.method}; before: {history.history}"),
         table(("", "least", "greatest", "estimated error"), rows),
@@ -148,7 +150,9 @@ def _points(branch: Branch, *, named: bool) -> str:
         exact = None if p.exact is None else p.exact.parameters.get(branch.parameters[0])
         found = [p.data.get(key) for key in ("omega", "period", "criticality")]
         rows.append((branch.name, p.name, p.title, *where, exact, *found))
-    head = ("branch", "point", "kind", *heads, f"{heads[0]}, exact", "omega [rad/s]", "period [s]")
+    units = {"omega": system.frequency_unit, "period": system.time_unit}
+    times = [with_unit(key, unit) for key, unit in units.items()]
+    head = ("branch", "point", "kind", *heads, f"{heads[0]}, exact", *times)
     shown = rows if named else [(None, *row[1:]) for row in rows]
     return table((*head, "criticality"), shown)
 
@@ -158,8 +162,10 @@ def _units_of(point: SpecialPoint) -> dict[str, str]:
     system = getattr(point.origin, "system", None)
     if system is None:
         return {}
+    time = getattr(system, "time_unit", SECONDS)
+    ours = {"period": time, "omega": frequency_unit(time)}
     table = getattr(system, "parameter_table", ())
-    return dict(getattr(system, "state_units", {})) | {p.name: p.unit for p in table}
+    return ours | dict(getattr(system, "state_units", {})) | {p.name: p.unit for p in table}
 
 
 def _value(value: object) -> object:

@@ -124,8 +124,11 @@ def find(kind: str, name: str) -> Path:
     return _only(kind, name, files[name])
 
 
-def is_file_name(kind: str, name: str) -> bool:
+def is_file_name(kind: str, name: object) -> bool:
     """Say whether a name is the path of a file and not a name on the shelf."""
+    if not isinstance(name, str):
+        msg = f"{name!r} is no name of a {KINDS[kind].one}; give a word in quotes"
+        raise UsageError(msg)
     return name.endswith(KINDS[kind].endings)
 
 

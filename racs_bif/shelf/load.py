@@ -188,7 +188,7 @@ def _compiled(path: Path, options: dict[str, str]) -> CompiledModel:
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeError) as error:
-        msg = f"model file {path} cannot be read: {error}"
+        msg = f"model file {path} cannot be read ({error}); write it in UTF-8"
         raise ModelError(msg) from error
     closed = is_closed(path, text)
     # A file in TOML may leave its name to that of the file.

@@ -71,7 +71,7 @@ def complaint(file: Path, error: BaseException) -> str:
     Examples
     --------
     >>> complaint(Path("duffing.py"), ZeroDivisionError("division by zero"))
-    'duffing.py cannot be used: it raises ZeroDivisionError: division by zero'
+    'duffing.py cannot be used, it raises ZeroDivisionError: division by zero; mend the file'
     """
     lines = [
         frame.lineno
@@ -82,7 +82,8 @@ def complaint(file: Path, error: BaseException) -> str:
         lines.append(error.lineno)
     place = f"line {lines[-1]}" if lines else "it"
     text = error.msg if isinstance(error, SyntaxError) else " ".join(str(error).split())
-    return f"{file} cannot be used: {place} raises {type(error).__name__}: {text}".rstrip(": ")
+    told = f"{type(error).__name__}: {text}".rstrip(": ")
+    return f"{file} cannot be used, {place} raises {told}; mend the file"
 
 
 class _Finder:

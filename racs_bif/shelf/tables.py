@@ -50,8 +50,8 @@ def model_from_toml(path: str | Path) -> Model:
     data = _read(file)
     try:
         return _model(file, data)
-    except ModelError as error:
-        msg = f"{file.name}: {error}"
+    except ModelError as inner:
+        msg = f"{file.name}: {inner}"
         raise ModelError(msg) from None
     except RecursionError:
         msg = f"{file.name}: an expression is nested too deeply; split it"
@@ -67,10 +67,11 @@ def _read(file: Path) -> dict[str, Any]:
             raise ModelError(msg)
         return tomllib.loads(file.read_text(encoding="utf-8"))
     except OSError as error:
-        msg = f"model file {file} cannot be read: {error.strerror or error}"
+        msg = f"model file {file} cannot be read ({error.strerror or error}); check its path"
         raise ModelError(msg) from None
     except UnicodeDecodeError as error:
-        msg = f"model file {file} is no text in UTF-8: {error.reason} at byte {error.start}"
+        why = f"{error.reason} at byte {error.start}"
+        msg = f"model file {file} is no text in UTF-8: {why}; write it in UTF-8"
         raise ModelError(msg) from None
     except RecursionError:
         msg = f"model file {file} is nested too deeply; write flat tables"
@@ -78,7 +79,7 @@ def _read(file: Path) -> dict[str, Any]:
     except ValueError as error:  # of the parser, which says where
         if isinstance(error, ModelError):
             raise
-        msg = f"model file {file} is no TOML: {' '.join(str(error).split())}"
+        msg = f"model file {file} is no TOML ({' '.join(str(error).split())}); mend the file"
         raise ModelError(msg) from None
 
 
@@ -255,6 +256,7 @@ _KEYS: Final[dict[str, Callable[[str, str, object], Any]]] = {
     "source": _word,
     "notes": _words,
     "inputs": _words,
+    "time_unit": _word,
     "band": _pair,
     "mass": _mass,
     "equations": _formulas,

@@ -66,10 +66,13 @@ class BatchSettings:
             msg = f"the tolerance of a batch must be above 0 and at most 0.01, not {self.tolerance}"
             raise UsageError(msg)
         if self.samples < 2 or self.most < 1:
-            msg = "a batch keeps at least 2 samples, and makes at least one step"
+            msg = (
+                f"a batch must keep at least 2 samples and make at least 1 step, "
+                f"not {self.samples} and {self.most}"
+            )
             raise UsageError(msg)
         if not 0.0 <= self.after < np.inf:
-            msg = f"a batch keeps samples after some time from 0 on, not {self.after:g} s"
+            msg = f"'after' of a batch must be a finite time from 0 on, not {self.after:g} s"
             raise UsageError(msg)
 
 
@@ -246,7 +249,7 @@ def members(system: System, values: Mapping[str, Array], count: int | None = Non
         raise UsageError(msg)
     number = lengths.pop() if lengths else 1
     if number < 1:
-        msg = "a batch needs at least one member"
+        msg = "a batch needs at least one member, but its parameters or starts are empty"
         raise UsageError(msg)
     for name, column in columns.items():
         for value in (column.min(), column.max()):
@@ -270,7 +273,7 @@ def initial(field: BatchField, starts: Array | None) -> Array:
         return field.at_rest(np.zeros((field.ny, count)))
     if starts.ndim != 2 or starts.shape[1] not in {field.ny, field.size}:
         msg = (
-            f"starts of a batch have shape (N, {field.ny}), or (N, {field.size}) with memory "
+            f"starts of a batch must have shape (N, {field.ny}), or (N, {field.size}) with memory "
             f"states, not {starts.shape}"
         )
         raise UsageError(msg)

@@ -59,6 +59,13 @@ class Inputs:
                 raise UsageError(msg)
         laws = self.system.exact.laws(self.system.values)
         for name, signal in self.signals.items():
+            given: object = signal
+            if not (callable(given) or isinstance(given, Mapping)):
+                msg = (
+                    f"the input '{name}' is {given!r}; give a function of time, or a dict of the "
+                    f"times it jumps at, such as {{0.0: {given!r}}}"
+                )
+                raise UsageError(msg)
             values = signal.values() if isinstance(signal, Mapping) else [signal(0.0)]
             for value in values:
                 moved = self.system.with_parameters({name: float(value)})

@@ -106,7 +106,7 @@ def lyapunov_exponents(
         msg = f"give an interval up to a {_BATCHES}th of the duration, and no negative transient"
         raise UsageError(msg)
     if not 1 <= count <= n:
-        msg = f"{count} exponents were asked for; the equation has {n}"
+        msg = f"{count} exponents were asked for, the equation has {n}; give a count from 1 to {n}"
         raise UsageError(msg)
     joint = _Joint(field, p, n, count, tolerance)
     Q = np.linalg.qr(np.random.default_rng(0).normal(size=(n, count)))[0]
@@ -159,7 +159,7 @@ class _Joint:
                 alive = solver.status != "failed" and solver.t > solver.t_old + _STUCK * interval
                 z = solver.y
         if not alive or not np.all(np.isfinite(z)):
-            msg = "the trajectory cannot be continued; start elsewhere, or shorten the duration"
+            msg = "the trajectory cannot be continued; start elsewhere, or give a shorter duration"
             raise ConvergenceError(msg)
         end = np.asarray(z, dtype=float)
         Q, R = np.linalg.qr(end[self.n :].reshape(self.count, self.n).T)

@@ -88,7 +88,7 @@ class RealisedStepper:
                 break
         kept = int(np.all(np.isfinite(states), axis=0).cumprod().sum())
         if kept < 2:
-            msg = f"model '{self.system.name}': nothing was integrated. {stopped}"
+            msg = f"model '{self.system.name}': nothing was integrated ({stopped}); start elsewhere"
             raise ConvergenceError(msg)
         times = self.times[:kept]
         return March(times, self._core_states(times, states[:, :kept]), stopped)

@@ -126,5 +126,6 @@ def _held(system: System, X: Array, integrates: Array) -> Array:
         X[bound] -= step
         if np.all(np.abs(step) <= _TOLERANCE * (1.0 + np.abs(X[bound]))):
             return X
-    msg = f"model '{system.name}': no state of rest of its elements at the initial values"
+    told = "no state of rest of its elements at the initial values"
+    msg = f"model '{system.name}': {told}; give others"
     raise ConvergenceError(msg)

@@ -90,7 +90,7 @@ def called(external: External, start: Array, derivatives: str, why: str) -> tupl
         if derivatives == SERIES:
             msg = (
                 f"model '{external.arguments.model}': '{external.arguments.function}' has no "
-                f"series: {refused}"
+                f"series ({refused}); give derivatives='differences', or write it otherwise"
             )
             raise ModelError(msg)
     error = _difference_error(external, start, complex_step=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.errors import ParameterError, UsageError
+from racs_bif.errors import ParameterError, UsageError, ValidityError
 from racs_bif.symbolic.jets import multilinear
 from racs_bif.symbolic.model import find_parameter
 from racs_bif.symbolic.paths import ParameterPath
@@ -151,7 +151,7 @@ def check_values(compiled: CompiledModel, wanted: dict[str, float]) -> None:
                 f"parameter '{name}' = {value:g}{unit} is outside the model's validity; "
                 f"choose it {_words(low, high)}"
             )
-            raise ParameterError(msg)
+            raise ValidityError(msg)
     for info in compiled.derived:
         if info.name in wanted and info.sets in wanted:
             msg = f"'{info.name}' sets '{info.sets}': give one of the two, not both"

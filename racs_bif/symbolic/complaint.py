@@ -33,7 +33,6 @@ def complaint(arguments: Arguments, error: BaseException, numbers: NDArray[Any])
     told = [f"{name} = {value:.6g}" for name, value in named]
     at = ", ".join(told[:_MOST]) + (", ..." if len(told) > _MOST else "")
     words = " ".join(str(error).split())
-    return (
-        f"model '{arguments.model}': the function '{arguments.function}'{place} raises "
-        f"{type(error).__name__} at {at}: {words}"
-    ).rstrip(": ")
+    what = f"{type(error).__name__} at {at}: {words}".rstrip(": ")
+    function = f"model '{arguments.model}': the function '{arguments.function}'{place}"
+    return f"{function} raises {what}; make it return numbers there"

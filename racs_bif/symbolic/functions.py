@@ -21,7 +21,8 @@ from racs_bif.symbolic.called import called, check_constant, equations
 from racs_bif.symbolic.external import DIFFERENCES, SERIES, External
 from racs_bif.symbolic.model import FractionalElement, Model, Parameter
 from racs_bif.symbolic.recorded import RefusedError, recorded
-from racs_bif.symbolic.strings import check_name, number, read_element, read_table
+from racs_bif.symbolic.strings import check_name, number, read_element, read_inputs, read_table
+from racs_bif.units import SECONDS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,7 +33,7 @@ RECORDED: Final = "recorded"
 CHOICES: Final = ("auto", RECORDED, SERIES, DIFFERENCES)
 
 
-def model_from_function(
+def model_from_function(  # noqa: PLR0913 - the parts of a model, by their names
     name: str,
     function: Callable[..., Any],
     *,
@@ -41,6 +42,8 @@ def model_from_function(
     guess: Mapping[str, float] | Sequence[float] | None = None,
     elements: Iterable[tuple[str, str, str] | FractionalElement] = (),
     outputs: Mapping[str, str] | None = None,
+    inputs: Iterable[str] = (),
+    time_unit: str = SECONDS,
     derivatives: str = "auto",
 ) -> Model:
     """Build a model from a plain Python right-hand side.
@@ -77,6 +80,10 @@ def model_from_function(
         argument.
     outputs : mapping of str to str, optional
         Further quantities, as expressions.
+    inputs : iterable of str
+        Parameters that act on the model from outside: the inputs of its linearisations.
+    time_unit : str
+        Unit of the time; ``""`` where it has none.
     derivatives : {"auto", "recorded", "series", "differences"}
         The best that is possible, or this one and no other.
 
@@ -116,6 +123,8 @@ def model_from_function(
         guess=numbers,
         elements=source.elements,
         outputs=read_table(outputs or {}),
+        inputs=read_inputs(name, inputs),
+        time_unit=time_unit,
     )
     model(equations=dict.fromkeys(source.states, 0))  # refuses names and numbers before any call
     start = _start(source, numbers)
@@ -130,7 +139,10 @@ def model_from_function(
         except RefusedError as refused:
             why = str(refused)
             if derivatives == RECORDED:
-                msg = f"model '{name}': '{external.arguments.function}' cannot be recorded: {why}"
+                msg = (
+                    f"model '{name}': '{external.arguments.function}' cannot be recorded ({why}); "
+                    "leave derivatives='auto'"
+                )
                 raise ModelError(msg) from refused
     external, note = called(external, start, derivatives, why)
     return model(equations=equations(external), external=external, notes=(note,))

@@ -255,7 +255,7 @@ class JetFunctions:
             constants = self._functions[f"{name}_prepare"](p)
             results = self._functions[name](constants, *rest)
         except (ArithmeticError, ValueError) as error:
-            msg = f"the equations are not smooth here, so that they have no series ({error})"
+            msg = f"the equations have no series, not being smooth here ({error}); start elsewhere"
             raise ConvergenceError(msg) from None
         kind = complex if any(np.iscomplexobj(g) for g in groups) else float
         out = np.zeros((len(results), len(algebra)), dtype=kind)

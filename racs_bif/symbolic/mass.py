@@ -110,7 +110,8 @@ def _pivots(model: Model) -> tuple[list[int], list[float]]:
     mass = _numbers(model)
     n = len(mass)
     if not np.all(np.isfinite(mass)):
-        msg = f"model '{model.name}': the mass matrix is not finite at the default parameters"
+        told = "the mass matrix is not finite at the default parameters"
+        msg = f"model '{model.name}': {told}; give others"
         raise ModelError(msg)
     largest = np.abs(mass).max(axis=1, initial=0.0)
     if n == 0 or largest.min() == 0.0 or np.linalg.cond(mass / largest[:, None]) > 1e12:

@@ -32,6 +32,7 @@ def facts(model: Model) -> dict[str, Any]:
         "band": [float(bound) for bound in model.band],
         "states": list(model.states),
         "inputs": list(model.inputs),
+        "time_unit": model.time_unit,
         "external": None if model.external is None else model.external.facts,
         "units": dict(model.units),
         "descriptions": dict(model.descriptions),

@@ -12,6 +12,7 @@ from numbers import Real
 from typing import TYPE_CHECKING
 
 from racs_bif.errors import ModelError, ParameterError, nearest
+from racs_bif.units import SECONDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -157,6 +158,9 @@ class Model:
     terms : mapping of str to sympy expression
         Shared terms, computed once and in this order; each may use those before it. Equations,
         outputs and inputs of elements may use them, the mass matrix and laws may not.
+    time_unit : str
+        Unit of the time, of which rates are per one and frequencies radians per one; empty where
+        the time has none. The equations and the band are in it, nothing is converted.
     external : External, optional
         A Python function that gives the equations; see `racs_bif.symbolic.functions`.
 
@@ -186,6 +190,7 @@ class Model:
     inputs: tuple[str, ...] = ()
     terms: Mapping[str, sp.Expr] = field(default_factory=dict)
     external: External | None = None
+    time_unit: str = SECONDS
 
     def __post_init__(self) -> None:
         """Make the fields immutable and sympy's, and check that the parts fit together."""
@@ -278,6 +283,12 @@ class Model:
             if not isinstance(value, Real) or not math.isfinite(float(value)):
                 msg = f"model '{self.name}': the {what} is {value!r}, it must be a finite number"
                 raise ModelError(msg)
+        unit: object = self.time_unit
+        if not isinstance(unit, str):
+            msg = (
+                f"model '{self.name}': the unit of time is {unit!r}; give a word such as 's', or ''"
+            )
+            raise ModelError(msg)
         low, high = self.band
         if not 0.0 < low < high < math.inf:
             msg = f"model '{self.name}': band {low:g} .. {high:g} rad/s; give 0 < LOW < HIGH"

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from racs_bif.errors import ModelError, nearest
 from racs_bif.symbolic.model import GRAMMAR, FractionalElement, Model, Parameter
+from racs_bif.units import SECONDS
 
 if TYPE_CHECKING:
     import sympy as sp
@@ -52,7 +53,7 @@ _LARGEST_POWER = 1000.0
 """Greatest exponent of a symbol, and greatest number of decimal places of a power of a number."""
 
 
-def model_from_strings(
+def model_from_strings(  # noqa: PLR0913 - the parts of a model, by their names
     name: str,
     equations: Mapping[str, str],
     *,
@@ -61,6 +62,8 @@ def model_from_strings(
     elements: Iterable[tuple[str, str, str]] = (),
     outputs: Mapping[str, str] | None = None,
     terms: Mapping[str, str] | None = None,
+    inputs: Iterable[str] = (),
+    time_unit: str = SECONDS,
 ) -> Model:
     """Build a model from strings.
 
@@ -80,6 +83,10 @@ def model_from_strings(
         Further quantities.
     terms : mapping of str to str, optional
         Shared terms that equations, outputs and later terms may use.
+    inputs : iterable of str
+        Parameters that act on the model from outside: the inputs of its linearisations.
+    time_unit : str
+        Unit of the time; ``""`` where it has none.
 
     Returns
     -------
@@ -107,7 +114,17 @@ def model_from_strings(
         elements=tuple(read_element(name, element) for element in elements),
         outputs=read_table(outputs or {}),
         terms=read_table(terms or {}),
+        inputs=read_inputs(name, inputs),
+        time_unit=time_unit,
     )
+
+
+def read_inputs(name: str, inputs: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of a model's inputs, of which one string alone is none."""
+    if isinstance(inputs, str) or not isinstance(inputs, Iterable):
+        msg = f"model '{name}': give the names of the inputs as a list, not as {inputs!r}"
+        raise ModelError(msg)
+    return tuple(plain(key) for key in inputs)
 
 
 def _check_tables(name: str, *tables: object) -> None:
@@ -150,8 +167,8 @@ def read_table(table: Mapping[str, str]) -> dict[str, sp.Expr]:
             raise ModelError(msg)
         try:
             found[plain(name)] = parse(text)
-        except ModelError as error:
-            msg = f"'{_short(name)}': {error}"
+        except ModelError as inner:
+            msg = f"'{_short(name)}': {inner}"
             raise ModelError(msg) from None
     return found
 
@@ -159,7 +176,7 @@ def read_table(table: Mapping[str, str]) -> dict[str, sp.Expr]:
 def read_element(name: str, element: Sequence[str]) -> FractionalElement:
     """Return an element of a model from its strings (output, input, law)."""
     if isinstance(element, str) or len(element) != 3:
-        msg = f"model '{name}': an element is (output, input, law), not {element!r}"
+        msg = f"model '{name}': an element must be (output, input, law), not {element!r}"
         raise ModelError(msg)
     output, source, law = element
     check_name(name, output)
@@ -171,7 +188,7 @@ def number(name: str, key: str, value: float) -> float:
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
-        msg = f"model '{name}': '{key}' is {_short(repr(value))}, which is no number"
+        msg = f"model '{name}': '{key}' is {_short(repr(value))}, which is no number; give one"
         raise ModelError(msg) from None
 
 
@@ -250,12 +267,12 @@ class _Reader:
         import sympy as sp
 
         if isinstance(node.value, bool) or not isinstance(node.value, int | float):
-            msg = f"'{node.value!r}' in '{_short(self.text)}' is not a real number"
+            msg = f"'{node.value!r}' in '{_short(self.text)}' is not a real number; give one"
             raise ModelError(msg)
         if isinstance(node.value, int):
             return self._bounded(sp.Integer(node.value))
         if not math.isfinite(node.value):
-            msg = f"a number in '{_short(self.text)}' is too large"
+            msg = f"a number in '{_short(self.text)}' is too large; scale the equation"
             raise ModelError(msg)
         return sp.Float(repr(node.value))
 
@@ -269,7 +286,7 @@ class _Reader:
             return -self.expression(node.operand)
         if isinstance(node.op, ast.UAdd):
             return self.expression(node.operand)
-        msg = f"'{_short(self.text)}': only + and - may stand before a term"
+        msg = f"'{_short(self.text)}': only + and - may stand before a term; write it so"
         raise ModelError(msg)
 
     def _binary(self, node: ast.BinOp) -> sp.Expr:
@@ -285,7 +302,7 @@ class _Reader:
     def _bounded(self, value: sp.Expr) -> sp.Expr:
         """Refuse numbers whose digits alone take long to reckon with."""
         if value.is_Rational and max(value.p.bit_length(), value.q.bit_length()) > _MOST_BITS:
-            msg = f"a number in '{_short(self.text)}' has too many digits"
+            msg = f"a number in '{_short(self.text)}' has too many digits; write it as 1.0e9"
             raise ModelError(msg)
         return value
 
@@ -297,14 +314,15 @@ class _Reader:
         if left.is_number and left != 0:
             size *= max(1.0, abs(math.log10(abs(complex(left)))))
         if not size <= _LARGEST_POWER:
-            msg = f"a power in '{_short(self.text)}' is too large"
+            msg = f"a power in '{_short(self.text)}' is too large; write it with a smaller exponent"
             raise ModelError(msg)
 
     def _call(self, node: ast.Call) -> sp.Expr:
         import sympy as sp
 
         if not isinstance(node.func, ast.Name) or node.keywords:
-            msg = f"'{_short(ast.unparse(node))}' is not a function call that is understood"
+            called = _short(ast.unparse(node))
+            msg = f"'{called}' is not a function call that is understood; write it as sin(x)"
             raise ModelError(msg)
         name = node.func.id
         if name not in _FUNCTIONS:
@@ -313,7 +331,8 @@ class _Reader:
             raise ModelError(msg)
         least, most = _ARGUMENTS.get(name, (1, 1))
         if not least <= len(node.args) <= most:
-            msg = f"'{_short(ast.unparse(node))}': wrong number of arguments"
+            wanted = f"{least}" if least == most else f"{least} to {most}"
+            msg = f"'{_short(ast.unparse(node))}': wrong number of arguments; give {wanted}"
             raise ModelError(msg)
         options = {"evaluate": False} if name in _AS_WRITTEN else {}
         return getattr(sp, _FUNCTIONS[name])(*map(self.expression, node.args), **options)

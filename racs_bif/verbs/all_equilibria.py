@@ -13,6 +13,7 @@ from racs_bif.errors import ConvergenceError
 from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.diagram import Diagram
 from racs_bif.shelf.load import system_of
+from racs_bif.verbs.bands import on_a_band_that_holds
 from racs_bif.verbs.equilibria import (
     as_branch,
     check_span,
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from racs_bif.continuation.points import Point, Trace
+    from racs_bif.equilibria.problem import EquilibriumProblem
     from racs_bif.fractional.system import System
     from racs_bif.symbolic.field import Array
     from racs_bif.symbolic.model import Model
@@ -180,21 +182,31 @@ def all_equilibria(
     system = system_of(model)
     low, high = check_span(system, parameter, span)
     chosen = settings or StepSettings()
-    search = _Search(system, parameter, (low, high), chosen, tuple(at), progress)
-    search.follow(starting_point(system, parameter, (low, high)))
-    if probes:
-        inset = 1e-3 * (high - low)
-        for value in np.linspace(low + inset, high - inset, probes):
-            search.probe(float(value))
-    if not search.traces:
-        msg = (
-            f"no branch of equilibria found between {parameter} = {low:g} and {high:g}; widen the "
-            "span or give the model another guess"
-        )
-        raise ConvergenceError(msg)
+
+    def work(system: System) -> _Search:
+        search = _Search(system, parameter, (low, high), chosen, tuple(at), progress)
+        search.follow(starting_point(system, parameter, (low, high)))
+        if probes:
+            inset = 1e-3 * (high - low)
+            for value in np.linspace(low + inset, high - inset, probes):
+                search.probe(float(value))
+        if not search.traces:
+            msg = (
+                f"no branch of equilibria found between {parameter} = {low:g} and {high:g}; widen "
+                "the span or give the model another guess"
+            )
+            raise ConvergenceError(msg)
+        return search
+
+    def traces(system: System, search: _Search) -> list[tuple[EquilibriumProblem, Trace]]:
+        problem = equilibrium_problem(system, parameter)
+        return [(problem, found) for found in search.traces]
+
+    system, search, remark = on_a_band_that_holds(system, work, traces)
     problem = equilibrium_problem(system, parameter)
+    remarks = [remark] + [""] * (len(search.traces) - 1)
     branches = [
-        replace(as_branch(system, problem, found, (low, high)), connected=connected)
-        for found, connected in zip(search.traces, search.connected, strict=True)
+        replace(as_branch(system, problem, found, (low, high), said), connected=connected)
+        for found, connected, said in zip(search.traces, search.connected, remarks, strict=True)
     ]
     return Diagram(*branches)

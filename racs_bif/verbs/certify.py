@@ -101,7 +101,7 @@ def certify(
     branches = _branches(result)
     chosen = [b for b in branches if b.kind == "equilibrium"]
     if not chosen:
-        msg = "there is nothing to certify: give a result that has branches of equilibria"
+        msg = "this result has no branch of equilibria to certify; give one that 'continue' saved"
         raise UsageError(msg)
     checks: list[Check] = []
     for branch in chosen:
@@ -177,7 +177,7 @@ def _omega(point: SpecialPoint) -> float:
         return 0.0
     omega = point.data.get("omega")
     if not isinstance(omega, float) or not 0.0 < omega < float("inf"):
-        msg = f"{point.name} is reported without a frequency"
+        msg = f"{point.name} is reported without a frequency; compute it again"
         raise ConvergenceError(msg)
     return omega
 
@@ -194,7 +194,8 @@ def _check_reported(point: SpecialPoint, exact: Resolved, name: str) -> None:
         return
     msg = (
         f"reported exact {name} = {reported:.9g}, omega = {point.exact.omega:.9g} rad/s, but the "
-        f"exact point is at {name} = {exact.value:.9g}, omega = {exact.omega:.9g} rad/s"
+        f"exact point is at {name} = {exact.value:.9g}, omega = {exact.omega:.9g} rad/s; "
+        "compute it again"
     )
     raise ConvergenceError(msg)
 

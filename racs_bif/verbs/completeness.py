@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from racs_bif.fractional.certificates import Resolved
+    from racs_bif.results.branch import Branch
     from racs_bif.results.certificate import Check
     from racs_bif.results.special import SpecialPoint
     from racs_bif.verbs.subject import Subject
@@ -137,7 +138,7 @@ def _sides(
     values, holds, words = [float(branch.parameter[k])], True, []
     try:
         for side, neighbour in (("before", before), ("after", after)):
-            if neighbour is None:
+            if neighbour is None or _apart(branch, k, neighbour):
                 continue
             reported = int(branch.unstable[neighbour])
             place = _aside(subject, k, neighbour, resolved)
@@ -151,6 +152,12 @@ def _sides(
     interval = min(values), max(values)
     finding = "; ".join(words) or "no other point on the branch"
     return subject.check(point.name, "complete", interval, finding, holds=holds, numbers=numbers)
+
+
+def _apart(branch: Branch, k: int, neighbour: int) -> bool:
+    """Return whether another special point lies between: the count there is not beside this one."""
+    low, high = sorted((k, neighbour))
+    return any(low < point.index < high for point in branch.special)
 
 
 def _aside(subject: Subject, k: int, neighbour: int, resolved: Mapping[str, Resolved]) -> Place:

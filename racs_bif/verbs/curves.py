@@ -20,6 +20,7 @@ from racs_bif.numerics.threads import single_threaded
 from racs_bif.results.branch import Branch
 from racs_bif.results.provenance import describe
 from racs_bif.results.special import SpecialPoint
+from racs_bif.symbolic.model import find_parameter
 from racs_bif.verbs import assemble
 from racs_bif.verbs.curve_start import CurveStart, frequency_of
 from racs_bif.verbs.cycle_curves import STARTS, follow_cycles, kind_of, starts_cycles
@@ -192,6 +193,7 @@ def _spans(
     names = origin.problem.path.names  # type: ignore[attr-defined] # as all of ours have
     found = []
     for name, span in zip(parameters, given, strict=True):
+        find_parameter(name, [p.name for p in system.parameter_table])
         known = origin.span if len(names) == 1 and name == names[0] else None
         low, high = check_span(system, name, span or known or _guessed(system, name))
         value = system.parameters[name]

@@ -21,7 +21,9 @@ from racs_bif.results.provenance import describe
 from racs_bif.results.special import ExactPoint, SpecialPoint
 from racs_bif.shelf.load import system_of
 from racs_bif.symbolic.model import Model, find_parameter
+from racs_bif.units import after, frequency_unit
 from racs_bif.verbs import assemble
+from racs_bif.verbs.bands import on_a_band_that_holds
 from racs_bif.verbs.origin import Origin
 
 if TYPE_CHECKING:
@@ -91,12 +93,19 @@ def continue_equilibria(
     """
     system = system_of(model)
     low, high = check_span(system, parameter, span)
-    problem = equilibrium_problem(system, parameter)
-    start = starting_point(system, parameter, (low, high))
     wanted, chosen = tuple(at), settings or StepSettings()
-    own = len(system.states)
-    found = follow(problem, start, (low, high), chosen, own=own, at=wanted, progress=progress)
-    return as_branch(system, problem, found, (low, high))
+
+    def work(system: System) -> tuple[EquilibriumProblem, Trace]:
+        problem = equilibrium_problem(system, parameter)
+        start = starting_point(system, parameter, (low, high))
+        own = len(system.states)
+        found = follow(problem, start, (low, high), chosen, own=own, at=wanted, progress=progress)
+        return problem, found
+
+    system, (problem, found), remark = on_a_band_that_holds(
+        system, work, lambda _, followed: [followed]
+    )
+    return as_branch(system, problem, found, (low, high), remark)
 
 
 def equilibrium_problem(system: System, parameter: str) -> EquilibriumProblem:
@@ -203,11 +212,15 @@ def starting_point(system: System, parameter: str, span: tuple[float, float]) ->
 
 
 def as_branch(
-    system: System, problem: EquilibriumProblem, found: Trace, span: tuple[float, float]
+    system: System,
+    problem: EquilibriumProblem,
+    found: Trace,
+    span: tuple[float, float],
+    remark: str = "",
 ) -> Branch:
     """Return a traced branch as a result, its Hopf points checked on the exact model."""
     sentence, early = assemble.stopped(found)
-    sentence += _beyond_band(system, found)
+    sentence += _beyond_band(system, found) + remark
     named = [(raw, _special(system, problem, raw, span)) for raw in found.special]
     states = np.array([p.z[:-1] for p in found.points])
     return Branch(
@@ -235,9 +248,10 @@ def _beyond_band(system: System, found: Trace) -> str:
     out = [p for p in found.special if p.label == "H" and not low <= p.data["omega"] <= high]
     if not out:
         return ""
-    names = ", ".join(f"{p.name} ({p.data['omega']:.4g} rad/s)" for p in out)
+    unit = after(frequency_unit(system.time_unit))
+    names = ", ".join(f"{p.name} ({p.data['omega']:.4g}{unit})" for p in out)
     return (
-        f" The frequency of {names} is outside the realisation's band, {low:g} to {high:g} rad/s: "
+        f" The frequency of {names} is outside the realisation's band, {low:g} to {high:g}{unit}: "
         "trust the exact values only, or give another --band."
     )
 

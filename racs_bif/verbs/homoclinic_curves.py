@@ -97,7 +97,7 @@ def follow_homoclinic(
         chosen = orbit_settings or problem.settings
     else:
         msg = (
-            f"a homoclinic curve starts at an orbit of long period or at BT, not at {point.name} "
+            f"a homoclinic curve must start at an orbit of long period or at BT, not {point.name} "
             f"({point.title})"
         )
         raise UsageError(msg)
@@ -118,7 +118,8 @@ def _predicted(
     """Return the orbit that a Bogdanov-Takens point predicts, its period and parameters."""
     names = origin.problem.path.names  # type: ignore[attr-defined] # that of a curve
     if names != path.names:  # type: ignore[attr-defined] # a path
-        msg = f"{point.name} predicts homoclinic orbits in the plane of {' and '.join(names)} only"
+        plane = " and ".join(names)
+        msg = f"{point.name} predicts homoclinic orbits in the plane of {plane} only; give these"
         raise UsageError(msg)
     guess = predict_orbits(point, KIND, _EPSILON if size is None else size)[0]
     half = _TAIL / guess.epsilon  # type: ignore[union-attr] # homoclinic

@@ -215,7 +215,7 @@ def find_orbit(  # noqa: PLR0913 - each is one choice of the user's
         )
     except RacsBifError as error:
         told = " | ".join([*troubles, f"simulated: {error}"])
-        msg = f"no orbit found at {parameter} = {value:g}: {told}"
+        msg = f"no orbit found at {parameter} = {value:g} ({told}); give another start"
         raise ConvergenceError(msg) from error
 
 
@@ -233,7 +233,10 @@ def _final(history: TimeHistory) -> dict[str, float]:
     for name, column in history.inputs.items():
         tail = column[len(column) // 2 :]
         if np.ptp(tail) > _STEADY * max(1.0, float(np.abs(tail).max())):
-            msg = f"'{name}' still moves in the second half of the history: no orbit lasts there"
+            msg = (
+                f"'{name}' still moves in the second half of the history, where no orbit lasts; "
+                "let it rest for longer"
+            )
             raise UsageError(msg)
         final[name] = float(tail[-1])
     return final
@@ -271,8 +274,8 @@ def _from_hopf(
             at = point.parameters[name]
             return single(branch, f"Followed from {point.name} at {name} = {at:.8g}.")
         tried.append(f"{point.name}: {branch.stopped}")
-    told = "; ".join(tried) or f"there is no Hopf point from {low:g} to {high:g}"
-    msg = f"no orbit followed to {name} = {value:g}: {told}"
+    told = " | ".join(tried) or f"there is no Hopf point from {low:g} to {high:g}"
+    msg = f"no orbit followed to {name} = {value:g} ({told}); simulate from another start"
     raise ConvergenceError(msg)
 
 

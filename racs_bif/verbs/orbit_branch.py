@@ -12,6 +12,7 @@ from racs_bif.continuation.stopped import Stopped
 from racs_bif.results.branch import Branch, Profile
 from racs_bif.results.provenance import describe
 from racs_bif.results.special import SpecialPoint
+from racs_bif.units import after, frequency_unit
 from racs_bif.verbs import assemble
 from racs_bif.verbs.origin import Origin
 
@@ -158,7 +159,8 @@ def _telling(states: NDArray[np.float64]) -> NDArray[np.int64]:
 def _beyond_band(followed: Followed) -> str:
     """Say where orbits are slower or faster than the realisation they were computed on is good."""
     system = followed.system
-    if not system.fractional or followed.method == "harmonic-balance":
+    balanced = getattr(followed.problem, "operator", "realised") == "exact"
+    if not system.fractional or balanced:
         return ""
     low, high = system.settings.band
     out = [
@@ -168,10 +170,11 @@ def _beyond_band(followed: Followed) -> str:
     ]
     if not out:
         return ""
+    unit = after(frequency_unit(system.time_unit))
     return (
         f" Between {followed.parameter} = {min(out):.6g} and {max(out):.6g} the frequency of the "
-        f"orbits is outside the realisation's band, {low:g} to {high:g} rad/s: do not trust them "
-        "there; use --orbits harmonic-balance, or a wider --band."
+        f"orbits is outside the realisation's band, {low:g} to {high:g}{unit}: do not trust "
+        "them there; use --orbits harmonic-balance, or a wider --band."
     )
 
 

@@ -101,8 +101,8 @@ def beginning(
         return _from_saved(point, origin, (parameter, method), settings, model)
     if isinstance(origin, Origin) or point.label not in {"H", "UZ", "EP", "MX"}:
         msg = (
-            f"{point.name} is a {point.title}; periodic orbits start from Hopf points (H) and from "
-            "points of branches of orbits"
+            f"{point.name} is a {point.title}; start from a Hopf point (H) or from a point "
+            "of a branch of orbits"
         )
         raise UsageError(msg)
     msg = f"{point.name} was loaded from a file; continue the equilibria again to start from it"
@@ -116,7 +116,7 @@ def _checked(method: str, settings: Settings | None) -> str:
         raise UsageError(msg)
     kind = METHODS[method].settings
     if not isinstance(settings, kind | None):
-        msg = f"{method} takes {kind.__name__}, not {type(settings).__name__}"
+        msg = f"{method} needs {kind.__name__}, not {type(settings).__name__}; give settings of it"
         raise UsageError(msg)
     return method
 

@@ -58,10 +58,12 @@ def phase_response(point: SpecialPoint, *, samples: int = 401) -> PhaseResponse:
         raise UsageError(msg)
     problem, raw = origin.problem, origin.raw
     if not isinstance(problem, OrbitProblem) or problem.degenerate(raw.z):
-        msg = f"{point.name} is no orbit; a phase response belongs to a point of a branch of orbits"
+        msg = f"{point.name} is no orbit; take a point of a branch of orbits"
         raise UsageError(msg)
     if not problem.stable(problem.floquet(raw.z).multipliers):
-        msg = f"the orbit at {point.name} is not stable: it has no phase that a kick could shift"
+        msg = (
+            f"the orbit at {point.name} is not stable and has no phase to shift; take a stable one"
+        )
         raise UsageError(msg)
     found = numerics.phase_response(problem, raw.z, samples)
     own = len(origin.system.states)
@@ -72,4 +74,5 @@ def phase_response(point: SpecialPoint, *, samples: int = 401) -> PhaseResponse:
         orbit=found.orbit[:own],
         realised=origin.system.fractional,
         units=describe(origin.system).units,
+        time_unit=origin.system.time_unit,
     )

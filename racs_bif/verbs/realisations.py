@@ -87,7 +87,7 @@ def compare_realisations(
     """
     system = system_of(model)
     if not system.fractional:
-        msg = f"model '{system.name}' has no fractional element: there is nothing to realise"
+        msg = f"model '{system.name}' has no fractional element to realise; take one that has"
         raise UsageError(msg)
     chosen = band or system.settings.band
     hopf = None if along is None else first_hopf(system, along[0], (along[1], along[2]))

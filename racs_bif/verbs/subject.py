@@ -71,7 +71,7 @@ class Subject:
             If the branch does not tell its place.
         """
         if not 0 <= point.index < len(self.branch) or self.parameter not in point.parameters:
-            msg = f"where on {self.branch.name} {point.name} lies is not reported"
+            msg = f"where on {self.branch.name} {point.name} lies is not reported; compute it again"
             raise ConvergenceError(msg)
         X = self.place(point.index).X
         for k, name in enumerate(self.system.states):

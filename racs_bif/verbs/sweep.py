@@ -134,7 +134,7 @@ def sweep(
     watched = quantity or describe(system).shown
     if watched not in system.states or not 0.0 < kept <= duration:
         msg = (
-            f"a sweep watches a state ({', '.join(system.states)}), over a stretch no longer "
+            f"a sweep must watch a state ({', '.join(system.states)}), over a stretch no longer "
             f"than its duration; not '{watched}' over {kept:g} of {duration:g} s"
         )
         raise UsageError(msg)

@@ -7,12 +7,12 @@ import pytest
 
 import racs_bif as rb
 from racs_bif.charts.plane import Plane
-from racs_bif.charts.rational import RationalSystem, rational
 from racs_bif.charts.search import search
 from racs_bif.charts.settings import ChartSettings
 from racs_bif.charts.sheet import Sheet
 from racs_bif.charts.sums import expand
 from racs_bif.errors import UsageError
+from racs_bif.fractional.rational import RationalSystem, rational
 from racs_bif.fractional.realisations import choose_realisation
 
 QUICK = ChartSettings(coarse=3, depth=4)

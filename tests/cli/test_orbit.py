@@ -66,7 +66,7 @@ def test_json_alone_on_standard_output(cli, file, out):
 def test_an_orbit_that_there_is_not(cli, file, out):
     told = cli("orbit", "--model", file, "--set", "al=1.4", "--out", out)
     assert told.status == 1
-    assert told.err.startswith("racs-bif: no orbit found at al = 1.4: ")
+    assert told.err.startswith("racs-bif: no orbit found at al = 1.4 (")
     assert not out.exists() or not list(out.iterdir())
 
 

@@ -271,7 +271,7 @@ def test_targets_at_the_ends_and_the_start_count_once(line):
 
 @pytest.mark.parametrize(
     ("targets", "message"),
-    [([3.0], "outside the span"), ({"y": [1.0]}, "no 'y'"), ([math.nan], "not finite")],
+    [([3.0], "outside the span"), ({"y": [1.0]}, "no 'y'"), ([math.nan], "must be finite")],
 )
 def test_targets_that_cannot_be_are_named(fold, targets, message):
     with pytest.raises(UsageError, match=message):
@@ -304,7 +304,7 @@ def test_start_at_the_edge_sent_outwards_has_one_point(line):
         ([0, 1], (1, 0), "from low to high"),
         ([0, 1], (1, 1), "from low to high"),
         ([0, 1], (0, math.inf), "from low to high"),
-        ([math.nan, 1], (0, 1), "not finite"),
+        ([math.nan, 1], (0, 1), "must be finite"),
         ([0.5], (0, 1), "at least one unknown"),
         ([[0.5, 0.5]], (0, 1), "at least one unknown"),
     ],

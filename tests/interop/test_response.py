@@ -129,7 +129,7 @@ def test_without_frequencies_the_band_and_its_surroundings_are_taken(vehicle):
     ],
 )
 def test_frequencies_ascend(vehicle, call):
-    with pytest.raises(UsageError, match="ascending"):
+    with pytest.raises(UsageError, match="finite and ascend"):
         call(vehicle)
 
 

@@ -83,7 +83,7 @@ def test_a_file_that_raises_is_one_line(tmp_path, source, complaint):
     with pytest.raises(ModelError) as caught:
         load_module(file)
     message = str(caught.value)
-    assert message.startswith(f"{file} cannot be used: {complaint}")
+    assert message.startswith(f"{file} cannot be used, {complaint}")
     assert "\n" not in message
     assert not any(tmp_path.name in name for name in sys.modules)
 

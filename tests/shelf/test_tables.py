@@ -170,8 +170,8 @@ REFUSED = {
         "[equations]\n'\u00b5' = '1'\n'\u03bc' = '2'",
         "given twice",
     ),
-    "no TOML": ("[equations\nx = 1", r"is no TOML: .*line 1"),
-    "a key twice": ("[equations]\nx = '1'\nx = '2'", "is no TOML: .*overwrite"),
+    "no TOML": ("[equations\nx = 1", r"is no TOML .*line 1"),
+    "a key twice": ("[equations]\nx = '1'\nx = '2'", "is no TOML .*overwrite"),
     "nested too deeply": ("a = " + "[" * 3000 + "]" * 3000, "nested too deeply|no TOML"),
 }
 
@@ -187,7 +187,7 @@ def test_refused(case, write):
 
 
 def test_files_that_cannot_be_read(tmp_path, write):
-    with pytest.raises(ModelError, match=r"nothing\.toml cannot be read: No such file"):
+    with pytest.raises(ModelError, match=r"nothing\.toml cannot be read \(No such file"):
         model_from_toml(tmp_path / "nothing.toml")
     with pytest.raises(UsageError, match="there is no file"):
         load_model(str(tmp_path / "nothing.toml"))

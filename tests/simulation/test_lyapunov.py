@@ -70,7 +70,7 @@ def test_dimensions():
 
 def test_what_is_refused(lorenz):
     x, p = np.ones(3), lorenz.values
-    with pytest.raises(UsageError, match="4 exponents were asked for; the equation has 3"):
+    with pytest.raises(UsageError, match="4 exponents were asked for, the equation has 3; give"):
         lyapunov_exponents(lorenz.field, x, p, 1.0, count=4)
     with pytest.raises(UsageError, match="interval up to a 16th"):
         lyapunov_exponents(lorenz.field, x, p, 1.0, interval=0.5)

@@ -125,7 +125,7 @@ def test_derivatives_by_parameters(compiled):
 
 
 def test_where_there_is_no_series_it_says_so(compiled):
-    with pytest.raises(ConvergenceError, match="not smooth"):
+    with pytest.raises(ConvergenceError, match="not being smooth"):
         compiled.expand(
             "core", total_degree(1, 3), np.array([0.7]), np.array([[1.0, 1, 0, 0], [0.0, 1, 0, 0]])
         )

@@ -231,7 +231,7 @@ def test_diagrams_are_certified_and_what_is_not_is_told(branch, spun_out):
     found = rb.certify(rb.Diagram(branch, spun_out, curve), "newton")
     assert {c.branch for c in found.checks} == {"EQ1", "EQ2"}
     assert found.notes == ("not certified, being no branches of equilibria: PO1",)
-    with pytest.raises(UsageError, match="nothing to certify"):
+    with pytest.raises(UsageError, match="no branch of equilibria to certify"):
         rb.certify(curve)
 
 

@@ -114,7 +114,7 @@ def test_a_cascade_that_ends_says_where(hopf):
     cascade = rb.period_doubling_cascade(hopf, 3, span=(0.05, 0.36))
     assert len(cascade.doublings) == 1
     assert "PO2 has no period doubling from 0.05 to 0.36" in cascade.stopped
-    with pytest.raises(UsageError, match="three doublings at least"):
+    with pytest.raises(UsageError, match="1 of 3 doublings do not tell"):
         _ = cascade.limit
     with pytest.raises(UsageError, match="depth of at least 1"):
         rb.period_doubling_cascade(hopf, 0)

@@ -183,7 +183,7 @@ def test_an_orbit_is_continued_from_a_file(cycles, model, tmp_path):
 def test_what_cannot_be_started_from_says_so(equilibria, cycles):
     with pytest.raises(UsageError, match="unknown method 'colocation'; did you mean"):
         rb.continue_orbits(equilibria["H1"], method="colocation")
-    with pytest.raises(UsageError, match="shooting takes OrbitSettings"):
+    with pytest.raises(UsageError, match="shooting needs OrbitSettings"):
         rb.continue_orbits(equilibria["H1"], orbit_settings=METHODS["collocation"].settings())
     with pytest.raises(ParameterError, match="unknown parameter 'ww'"):
         rb.continue_orbits(cycles["UZ1"], (0.0, 1.0), parameter="ww")
@@ -191,7 +191,7 @@ def test_what_cannot_be_started_from_says_so(equilibria, cycles):
         rb.continue_orbits(cycles["UZ1"], (0.6, 0.9))
     with pytest.raises(UsageError, match="no 'perod' to want values of"):
         rb.continue_orbits(cycles["UZ1"], (0.4, 0.6), at={"perod": [1.0]})
-    with pytest.raises(UsageError, match="start from Hopf points"):
+    with pytest.raises(UsageError, match="start from a Hopf point"):
         rb.continue_orbits(rb.continue_equilibria(joined(), "lam", SPAN, at=[0.3])["UZ1"])
 
 

@@ -50,5 +50,5 @@ def test_samples_without_extremes_keep_their_last():
 
 @pytest.mark.parametrize("wrong", [{"quantity": "z"}, {"quantity": "x", "kept": 61.0}])
 def test_what_cannot_be_swept(hopf, wrong):
-    with pytest.raises(UsageError, match="a sweep watches a state"):
+    with pytest.raises(UsageError, match="a sweep must watch a state"):
         sweep(hopf, "mu", [0.1], duration=60.0, **wrong)

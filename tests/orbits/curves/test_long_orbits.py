@@ -60,5 +60,5 @@ def test_other_points_start_none(orbits):
     assert hopf is not None
     model = rb.load_model("brusselator")
     point = rb.continue_equilibria(model, "B", (1, 4))["H1"]
-    with pytest.raises(UsageError, match="orbit of long period or at BT, not at H1"):
+    with pytest.raises(UsageError, match="orbit of long period or at BT, not H1"):
         rb.continue_curve(point, ("B", "A"), kind="homoclinic")
