@@ -1,0 +1,145 @@
+"""Whether the band of a realisation holds what decides stability, and a wider one where not.
+
+A realisation is good on its band; roots slower or faster than that are its own. The argument
+principle counts the exact unstable roots in the middle between any two special points. Where the
+realisation has other numbers there, or a Hopf point beyond its band, branches are followed again on
+a wider one, unless the user chose the band.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from racs_bif.errors import ConvergenceError, ParameterError
+from racs_bif.fractional.argument import count_unstable
+from racs_bif.fractional.realisations import choose_realisation
+from racs_bif.units import after, frequency_unit
+from racs_bif.verbs.assemble import interrupted
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from racs_bif.continuation.points import Point, Trace
+    from racs_bif.equilibria.problem import EquilibriumProblem
+    from racs_bif.fractional.system import System
+
+    Followed = Sequence[tuple[EquilibriumProblem, Trace]]
+
+Band = tuple[float, float]
+R = TypeVar("R")
+
+_FURTHER: Final = 10.0
+"""How much further a band reaches than what it must hold, or than it did."""
+_LIMITS: Final = (1e-7, 1e6)
+"""Beyond these multiples of the model's own band none is tried."""
+_BESIDE: Final = 1e-3
+"""Length of the branch, whose whole span counts 1, that is too near a special point to check."""
+_MARGIN: Final = 2.0
+"""How far within its band a realisation is good, as a factor."""
+
+
+def on_a_band_that_holds(
+    system: System,
+    work: Callable[[System], R],
+    traces: Callable[[System, R], Followed],
+) -> tuple[System, R, str]:
+    """Follow branches, and again on wider bands until the exact equations agree.
+
+    Parameters
+    ----------
+    system : System
+        The system; one whose realisation is not the default keeps it.
+    work : callable
+        Follows branches of equilibria.
+    traces : callable
+        What it followed.
+
+    Returns
+    -------
+    system : System
+        The system with the band taken.
+    result
+        Of `work`.
+    remark : str
+        What is to be said of it, empty where the first band holds.
+    """
+    result = work(system)
+    own: Band = tuple(system.compiled.meta["band"])
+    if not system.fractional or system.settings != choose_realisation(None, own):
+        return system, result, ""
+    kept, remark = system, ""
+    while True:
+        followed = traces(kept, result)
+        if any(interrupted(found) for _, found in followed):
+            return kept, result, remark
+        trouble = _trouble(kept, followed)
+        if trouble is None:
+            return kept, result, remark
+        (low, high), told = trouble
+        if low < _LIMITS[0] * own[0] or high > _LIMITS[1] * own[1]:
+            return kept, result, f"{remark} No band was found that settles it: {told}."
+        trial = replace(kept, settings=choose_realisation(None, (low, high)))
+        try:
+            result = work(trial)
+        except (ConvergenceError, ParameterError):
+            return kept, result, f"{remark} On a wider band nothing is found: {told}."
+        kept = trial
+        unit = after(frequency_unit(system.time_unit))
+        remark = f" The realisation's band was widened to {low:.4g} to {high:.4g}{unit}: {told}."
+
+
+def _trouble(system: System, followed: Followed) -> tuple[Band, str] | None:
+    """Return the band that is wanted and why, None where the present one will do."""
+    for problem, found in followed:
+        trouble = _beyond(system, problem, found) or _contradicted(system, problem, found)
+        if trouble is not None:
+            return trouble
+    return None
+
+
+def _beyond(system: System, problem: EquilibriumProblem, found: Trace) -> tuple[Band, str] | None:
+    low, high = system.settings.band
+    unit = after(frequency_unit(system.time_unit))
+    for point in found.special:
+        omega = float(point.data.get("omega", low))
+        if point.label == "H" and not _MARGIN * low <= omega <= high / _MARGIN:
+            wider = min(low, omega / _FURTHER), max(high, omega * _FURTHER)
+            name, value = problem.parameter, float(point.z[-1])
+            return wider, f"there is a Hopf point of {omega:.4g}{unit} at {name} = {value:.6g}"
+    return None
+
+
+def _contradicted(
+    system: System, problem: EquilibriumProblem, found: Trace
+) -> tuple[Band, str] | None:
+    low, high = system.settings.band
+    for point in _checked(found):
+        exact = _exact_count(system, problem, point)
+        if exact is not None and exact != point.unstable:
+            told = f"at {problem.parameter} = {point.parameter:.6g} there are {exact} exact"
+            return (low / _FURTHER, high), f"{told} unstable roots, not {point.unstable}"
+    return None
+
+
+def _checked(found: Trace) -> Iterator[Point]:
+    """Yield the first, middle and last point between any two special points, apart from these."""
+    places = sorted({0, *(point.index for point in found.special), len(found.points) - 1})
+    for a, b in pairwise(places):
+        start, end = found.points[a].arclength, found.points[b].arclength
+        piece = [
+            point
+            for point in found.points[a : b + 1]
+            if min(abs(point.arclength - start), abs(point.arclength - end)) > _BESIDE
+        ]
+        yield from (piece[k] for k in sorted({0, len(piece) // 2, len(piece) - 1} if piece else ()))
+
+
+def _exact_count(system: System, problem: EquilibriumProblem, point: Point) -> int | None:
+    p = problem.path.vector(point.parameter)
+    try:
+        X = system.exact.equilibrium(system.exact_point(point.z[:-1], p), p)
+        return count_unstable(system.exact, X, p).unstable
+    except (ConvergenceError, ArithmeticError):
+        return None

@@ -1,0 +1,60 @@
+"""Realisations whose band does not hold what decides stability."""
+
+import pytest
+
+import racs_bif as rb
+from racs_bif.shelf.load import system_of
+from racs_bif.verbs import bands
+
+SLOW = {
+    # the relaxation of a soft solid in minutes: its Hopf point is far below the model's own band
+    "x": "y",
+    "y": "-0.0001*x + mu*y - y**3 + 0.0005*w",
+}
+
+
+@pytest.fixture(scope="module")
+def slow():
+    return rb.model_from_strings(
+        "slow",
+        SLOW,
+        parameters={"mu": -0.01, "alpha": 0.5},
+        elements=[("w", "y", "s**alpha")],
+    )
+
+
+def test_a_band_is_widened_until_the_exact_equations_agree(slow):
+    branch = rb.continue_equilibria(slow, "mu", (-0.01, 0.01))
+    low, high = branch.system.realisation.band
+    assert low < 1e-2
+    assert "band was widened" in branch.stopped
+    (hopf,) = (point for point in branch.special if point.label == "H")
+    assert 2.0 * low < hopf.omega < high
+    assert abs(hopf.exact.shift["omega"]) < 1e-2
+    assert rb.certify(branch, "complete").holds
+
+
+def test_a_band_that_the_user_chose_is_kept(slow):
+    system = system_of(slow, band=(0.2, 50.0))
+    branch = rb.continue_equilibria(system, "mu", (-0.01, 0.01))
+    assert branch.system.realisation.band == (0.2, 50.0)
+    assert "widened" not in branch.stopped
+
+
+def test_every_branch_of_a_diagram_has_the_same_band(slow):
+    diagram = rb.all_equilibria(slow, "mu", (-0.01, 0.01), probes=0)
+    assert len({branch.system.realisation.band for branch in diagram}) == 1
+    assert diagram["EQ1"].system.realisation.band[0] < 1e-2
+
+
+def test_where_no_band_settles_it_that_is_said(slow, monkeypatch):
+    monkeypatch.setattr(bands, "_LIMITS", (0.5, 2.0))
+    branch = rb.continue_equilibria(slow, "mu", (-0.01, 0.01))
+    assert branch.system.realisation.band == (0.1, 100.0)
+    assert "No band was found that settles it" in branch.stopped
+
+
+def test_the_vehicles_own_band_will_do():
+    branch = rb.continue_equilibria(rb.load_model("racs"), "u", (5, 30))
+    assert branch.system.realisation.band == (0.1, 50.0)
+    assert "widened" not in branch.stopped
