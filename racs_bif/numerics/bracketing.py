@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _MOST = 100
+_BEYOND = 0.2
 _DIP_EVALUATIONS = 12
 _DIP_PATIENCE = 3
 _DIP_NOISE = 1e-13
@@ -23,12 +24,13 @@ def root(
     bracket: Bracket,
     tolerance: float,
 ) -> Bracket | None:
-    """Shrink a bracket of a sign change by the ITP method.
+    """Shrink a bracket of a sign change by inverse quadratic interpolation, or by bisection.
 
-    Source: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5. It is never
-    slower than bisection and needs no continuity. Its first trial is never at the root of the
-    secant but a fifth of the bracket beyond: where the function is hard to evaluate at its root, at
-    a branch point for instance, the surroundings are known first.
+    Source: T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997) 145: bisection wherever the quadratic
+    would not be monotonic between the ends. The first trial is never at the root of the secant but
+    a fifth of the bracket beyond: where the function is hard to evaluate at its root, at a branch
+    point for instance, the surroundings are known first. None is nearer to an end than half of the
+    tolerance: a root there is boxed in from its other side.
 
     Parameters
     ----------
@@ -47,23 +49,13 @@ def root(
         finite.
     """
     a, b, fa, fb = bracket
-    width = b - a
-    budget = math.ceil(math.log2(max(width / tolerance, 1.0))) + 1
-    for step in range(_MOST):
+    secant = (fb * a - fa * b) / (fb - fa)
+    x = secant + math.copysign(_BEYOND * (b - a), 0.5 * (a + b) - secant)
+    for _ in range(_MOST):
         if b - a <= tolerance:
             break
-        middle = 0.5 * (a + b)
-        secant = (fb * a - fa * b) / (fb - fa)
-        truncation = 0.2 * (b - a) ** 2 / width
-        sigma = math.copysign(1.0, middle - secant)
-        x = secant + sigma * truncation
-        if step and truncation > abs(middle - secant):
-            x = middle
-        reach = max(0.5 * tolerance * 2.0 ** (budget - step) - 0.5 * (b - a), 0.0)
-        if abs(x - middle) > reach:
-            x = middle - sigma * reach
-        # A root within the tolerance of an end is boxed in from its other side.
-        x = min(max(x, a + 0.4 * tolerance), b - 0.4 * tolerance)
+        least = min(0.5 * tolerance, 0.25 * (b - a))
+        x = min(max(x, a + least), b - least)
         if not a < x < b:
             break
         x, value = function(x, a, b)
@@ -72,10 +64,24 @@ def root(
         if value == 0.0:
             return x, x, 0.0, 0.0
         if (value > 0.0) == (fa > 0.0):
-            a, fa = x, value
+            third, a, fa = (a, fa), x, value
+            x = _next((a, fa), (b, fb), third)
         else:
-            b, fb = x, value
+            third, b, fb = (b, fb), x, value
+            x = _next((b, fb), (a, fa), third)
     return a, b, fa, fb
+
+
+def _next(
+    latest: tuple[float, float], other: tuple[float, float], third: tuple[float, float]
+) -> float:
+    """Return the next trial from both ends of the bracket and the end before."""
+    (x, f), (y, g), (z, h) = latest, other, third
+    xi, phi = (x - y) / (z - y), (f - g) / (h - g)
+    share = 0.5
+    if phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi:
+        share = f / (g - f) * h / (g - h) + (z - x) / (y - x) * f / (h - f) * g / (h - g)
+    return x + share * (y - x)
 
 
 def vertex(xs: tuple[float, float, float], ys: tuple[float, float, float]) -> tuple[float, float]:
