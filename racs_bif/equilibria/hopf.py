@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,13 +11,17 @@ from racs_bif.continuation.problem import Detector
 from racs_bif.equilibria.hopf_form import hopf_form
 
 if TYPE_CHECKING:
-    from racs_bif.continuation.points import Point, Spectrum
+    from racs_bif.continuation.points import Array, Point, Spectrum
+    from racs_bif.equilibria.hopf_form import HopfForm
     from racs_bif.equilibria.problem import EquilibriumProblem
 
 REAL = 1e-7
 """Below this a frequency is zero."""
 _OFF = 1e-3
-
+_SUSPICIOUS = 1e-8
+_ASIDE = 1e-4
+_LOCATED = 1e-10
+"""Error of a Hopf point's parameter, relative: a coefficient that is zero within it is zero."""
 
 _DEGENERATE = 1e-15
 """Coefficients below this are rounding: a linear system, or a vertical branch of orbits."""
@@ -76,15 +81,9 @@ class Hopf(Detector):
             )
         if omega <= REAL * (1.0 + np.abs(point.spectrum).max() * REAL):
             return None
-        z, path = point.z, problem.path
-        form = hopf_form(
-            problem.field,
-            z[:-1],
-            path.vector(z[-1]),
-            path.direction(z[-1]),
-            omega,
-            self.own,
-        )
+        form = self._form(problem, point.z, omega)
+        if abs(form.l1) < _SUSPICIOUS:
+            form = self._rounded(problem, point.z, form)
         return {
             "omega": omega,
             "l1": form.l1,
@@ -93,6 +92,20 @@ class Hopf(Detector):
             "crossing_speed": form.mu_slope.real,
             "form": form,
         }
+
+    def _form(self, problem: EquilibriumProblem, z: Array, omega: float) -> HopfForm:
+        path = problem.path
+        p, dp = path.vector(z[-1]), path.direction(z[-1])
+        return hopf_form(problem.field, z[:-1], p, dp, omega, self.own)
+
+    def _rounded(self, problem: EquilibriumProblem, z: Array, form: HopfForm) -> HopfForm:
+        """Return the form with Re c1 zero if it is zero within the error of the parameter."""
+        unit = max(1.0, abs(float(z[-1])))
+        beside = z + _ASIDE * unit * np.append(form.drift, 1.0)
+        change = self._form(problem, beside, form.omega).c1.real - form.c1.real
+        if abs(form.c1.real) * _ASIDE <= _LOCATED * abs(change):
+            return replace(form, c1=1j * form.c1.imag)
+        return form
 
 
 def real_sums(spectrum: Spectrum) -> tuple[np.ndarray, np.ndarray]:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 _NEAR: Final = 0.05
 _SINGULAR: Final = 1e-6
+_STILL: Final = 1e-9
+_STEEP: Final = 1e-5
 
 
 class FoldOfCycles(Detector):
@@ -31,6 +33,13 @@ class FoldOfCycles(Detector):
     def value(self, problem: OrbitProblem, point: Point) -> float:
         """Return the tangent's component along the parameter."""
         return math.nan if problem.degenerate(point.z) else float(point.tangent[-1])
+
+    def dismisses(self, before: Point, after: Point) -> bool:
+        """Return whether the parameter stands still: the orbits around a centre, no folds."""
+        size = max(1.0, abs(before.parameter))
+        steepest = max(abs(point.tangent[-1]) for point in (before, after))
+        moved = abs(after.parameter - before.parameter)
+        return bool(steepest <= _STEEP * size and moved <= _STILL * size)
 
     def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
         """Return period, multipliers, normal form; None where it is none or branches cross.

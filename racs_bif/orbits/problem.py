@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 _SEED: Final = 20240
 _SAMPLES: Final = 800
+_ROUNDED: Final = 1e-10
+"""A multiplier this little outside the unit circle is on it: those of the orbits around a centre."""
 _BESIDE: Final = 1e-6
 """Relative distance within which an orbit is the branch point that its branch begins at."""
 
@@ -202,7 +204,7 @@ class OrbitProblem(Problem):
 
     def sides(self, spectrum: NDArray[np.complex128]) -> NDArray[np.bool_]:
         """Return which multipliers (n,) are outside the unit circle, the trivial one exempt."""
-        outside = np.asarray(np.abs(spectrum) > 1.0)
+        outside = np.asarray(np.abs(spectrum) > 1.0 + _ROUNDED)
         outside[:1] = False
         return outside
 
