@@ -147,7 +147,7 @@ class Auto:
         while at < len(lines):
             header = [int(word) for word in lines[at].split()]
             kind, label, count, width, rows = (header[k] for k in (2, 3, 6, 7, 8))
-            numbers = [_number(w) for line in lines[at + 1 : at + 1 + rows] for w in line.split()]
+            numbers = [number(w) for line in lines[at + 1 : at + 1 + rows] for w in line.split()]
             table = np.array(numbers[: count * width]).reshape(count, width)
             parameters = np.array(numbers[-header[11] :])
             found.append(_Solution(kind, label, table[:, 0], table[:, 1:], parameters))
@@ -155,7 +155,7 @@ class Auto:
         return found
 
 
-def _number(word: str) -> float:
+def number(word: str) -> float:
     """Read a number; AUTO leaves the E out of exponents of three digits."""
     try:
         return float(word)

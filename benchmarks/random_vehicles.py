@@ -29,7 +29,6 @@ import numpy as np
 
 import racs_bif as rb
 from racs_bif.charts.settings import ChartSettings
-from racs_bif.equilibria.deflation import other_equilibria
 from racs_bif.errors import ConvergenceError, RacsBifError
 from racs_bif.fractional.argument import count_unstable
 
@@ -47,6 +46,10 @@ SPEEDS: Final = (3.0, 40.0)
 METHODS: Final = ("collocation", "harmonic-balance")
 ALLOWED: Final = {"collocation": 0.1, "harmonic-balance": 1e-3}
 """Residual of the exact equations along an orbit, relative: collocation has the realisation's."""
+STARTS: Final = 100
+LIKELY_STATE: Final = (10.0, 2.0, 0.5, 0.1)
+"""Deviations of the random states (v, w, delta_c and its rate) that equilibria are looked for from,
+and how many of them."""
 PLACES: Final = 4
 """Places of a chart at which roots are counted again."""
 _UNEXPECTED: Final = "UNEXPECTED"
@@ -255,15 +258,14 @@ def _counts(system: System) -> set[int]:
     The chart's equilibrium is continued from elsewhere; it need not be the one that Newton's
     method finds from the model's guess.
     """
-    p = system.values
-    try:
-        first = system.exact_point(system.equilibrium(), p)
-    except ConvergenceError:
-        return set()
-    found = [first]
-    for spread in (1.0, 10.0):
-        scale = spread * np.maximum(np.abs(first), 0.01)
-        found += other_equilibria(system.exact, p, found, [np.zeros_like(first)], scale)
+    p, random = system.values, np.random.default_rng(11)
+    found: list[np.ndarray] = []
+    for _ in range(STARTS):
+        guess = random.standard_normal(system.exact.size) * np.append(LIKELY_STATE, 0.5)
+        with suppress(ConvergenceError):
+            X = system.exact.equilibrium(random.uniform(0.0, 1.5) * guess, p)
+            if not any(np.abs(X - Y).max() < 1e-6 for Y in found):
+                found.append(X)
     counts = set()
     for X in found:
         with suppress(ConvergenceError):
