@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _SEED: Final = 20240
 _SAMPLES: Final = 800
 _ROUNDED: Final = 1e-10
-"""A multiplier this little outside the unit circle is on it: those of the orbits around a centre."""
+"""A multiplier this little outside the unit circle is on it, as those around a centre are."""
 _BESIDE: Final = 1e-6
 """Relative distance within which an orbit is the branch point that its branch begins at."""
 
