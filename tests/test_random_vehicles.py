@@ -18,7 +18,7 @@ from racs_bif.shelf.load import system_of
 
 PATH = Path(__file__).parents[1] / "benchmarks" / "random_vehicles.py"
 COUNT = int(os.environ.get("RACS_BIF_VEHICLES", "0"))
-VEHICLES = range(COUNT) if COUNT else (3, 4)
+VEHICLES = range(COUNT) if COUNT else (3,)
 
 
 @pytest.fixture(scope="module")

@@ -94,6 +94,12 @@ class FoldCurve(CurveProblem):
             jacobian[n, n + k] = -solved.w @ self.field.f_xp(x, p, solved.v, dp)
         return jacobian
 
+    def terms(self, z: Array) -> Array:
+        """Return the sizes (n+1,) of the terms of the residual: of g, those of w^T f_x v too."""
+        sizes, solved = super().terms(z), self._solve(z)
+        sizes[-1] += np.abs(solved.w) @ np.abs(solved.A) @ np.abs(solved.v)
+        return sizes
+
     def adapt(self, z: Array, tangent: Array) -> None:
         """Let the borders follow the null vectors."""
         del tangent

@@ -15,7 +15,7 @@ from racs_bif.errors import UsageError
 from racs_bif.fractional.rational import RationalSystem, rational
 from racs_bif.fractional.realisations import choose_realisation
 
-QUICK = ChartSettings(coarse=3, depth=4)
+QUICK = ChartSettings(coarse=3, depth=3)
 
 
 @pytest.fixture(scope="module")
