@@ -134,7 +134,8 @@ def newton(
             if matrices == iterations:
                 break
             solve, matrices = equations.bordered(z, row), matrices + 1
-        solution = solve(right)
+        # only the last matrix, the solution's, is asked for the tangent
+        solution = solve(right if fresh else right[:, :1])
         correction = solution[:, 0]
         size = _length(correction, weights)
         corrected, corrections = z - correction, corrections + 1
