@@ -189,7 +189,8 @@ class Watch:
         for place in self._places:
             value, beyond = after[place], following[1][place] if following else math.nan
             size = max(_FADING * self._sizes[place], abs(value))
-            if self.signs[place] * value > _ZERO * size and not abs(beyond) * _ZERO >= abs(value):
+            same = before[place] * value > 0.0 and self.signs[place] * value > _ZERO * size
+            if same and not abs(beyond) * _ZERO >= abs(value):
                 # Nothing changes, as nearly everywhere.
                 self._sizes[place] = size
             else:

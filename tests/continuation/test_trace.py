@@ -160,6 +160,24 @@ def test_branch_point_of_two_curved_branches(kinds, shift, start):
     assert branch.message == ""
 
 
+def test_a_helix_comes_by_its_start_but_does_not_close(kinds):
+    class Helix(kinds.Scalar):
+        def residual(self, z):
+            turn = (z[1] - 10.0) / 5e-3
+            return np.array([z[0] - np.cos(turn), z[2] - np.sin(turn)])
+
+        def jacobian(self, z):
+            turn = (z[1] - 10.0) / 5e-3
+            return np.array([[1.0, np.sin(turn) / 5e-3, 0.0], [0.0, -np.cos(turn) / 5e-3, 1.0]])
+
+    helix = Helix(None, None, None, spectral=False)
+    helix.measures = lambda z: {"turns": (z[1] - 10.0) / 5e-3 / (2.0 * math.pi)}
+    settings = StepSettings(points=400)
+    branch = trace(helix, [1.0, 10.0, 0.0], (-2, 2), (), settings, direction=1)
+    assert branch.stopped is Stopped.POINTS
+    assert branch.points[-1].measures["turns"] > 1.5
+
+
 def test_given_tangent_is_corrected_onto_the_branch(circle):
     branch = trace(circle, [0.6, 0.79], (-2, 2), tangent=[-0.8, 0.6])
     assert branch.stopped is Stopped.CLOSED
@@ -261,6 +279,17 @@ def test_target_just_short_of_a_fold_is_met_on_both_sides(fold):
     assert [special.z[1] for special in branch.special] == [1e-6, 1e-6]
     found = [special.z[0] for special in branch.special]
     np.testing.assert_allclose(found, [-1e-3, 1e-3], rtol=1e-9)
+
+
+def test_target_just_short_of_a_fold_is_met_in_a_walk_of_one_step(kinds):
+    # No other point tells that the parameter dips between these two.
+    problem = kinds.Scalar(
+        lambda x, p: p - (x - 5.0) ** 2, lambda x, p: -2.0 * (x - 5.0), lambda x, p: 1.0
+    )
+    settings = StepSettings(initial=4e-3, points=1)
+    branch = trace(problem, [4.99, 1e-4], (-1, 1), (), settings, targets=[1e-6], direction=-1)
+    assert branch.points[-1].z[0] > 5.005
+    np.testing.assert_allclose([s.z[0] for s in branch.special], [4.999, 5.001], atol=LOCATED)
 
 
 def test_targets_at_the_ends_and_the_start_count_once(line):
@@ -378,6 +407,20 @@ def test_equations_that_fail_end_the_branch_where_they_fail(kinds):
     assert branch.stopped is Stopped.FAILED
     assert branch.points[-1].z[1] == pytest.approx(0.5, abs=1e-6)
     assert "no tyre force" in branch.message
+
+
+def test_a_start_that_cannot_be_left_is_a_branch_of_one_point(kinds):
+    def only_at_the_start(x, p):
+        if p != 0.5:
+            msg = "outside its domain"
+            raise FloatingPointError(msg)
+        return x - p
+
+    problem = kinds.Scalar(only_at_the_start, lambda x, p: 1.0, lambda x, p: -1.0)
+    branch = trace(problem, [0.5, 0.5], (0, 1))
+    assert len(branch.points) == 1
+    assert branch.stopped is branch.stopped_backward is Stopped.FAILED
+    assert "outside its domain" in branch.message
 
 
 def test_nan_ends_the_branch_without_a_warning(kinds):

@@ -184,6 +184,7 @@ def test_derivative_of_the_determinant():
     assert ch.log_det(t)[1] == pytest.approx((after - before) / (2.0 * step), rel=1e-7)
     direct = [np.linalg.det(system.exact.delta(s, x, p)) for s in np.exp(t)]
     assert np.exp(ch.log_det(t)[0]) == pytest.approx(direct, rel=1e-12)
+    assert np.linalg.det(ch.matrix(t)) == pytest.approx(direct, rel=1e-12)
 
 
 def test_at_the_hopf_point_the_pair_is_on_the_axis():

@@ -1,0 +1,53 @@
+"""Whether a step counts, and for which reason not."""
+
+import numpy as np
+import pytest
+
+from racs_bif.continuation.checking import CONTRACTION, judge
+from racs_bif.continuation.scaling import Scaling
+
+FLAT = np.array([0.0, 1.0])
+
+
+def turned(angle):
+    return np.array([np.sin(angle), np.cos(angle)])
+
+
+def judged(chord=FLAT, angle=0.0, iterations=2, contraction=0.0):
+    scaling = Scaling(1.0, np.ones(1))
+    tangents = (turned(0.0), turned(angle))
+    return judge(scaling, (np.zeros(2), 0.1 * chord), tangents, (iterations, contraction), 0.3)
+
+
+@pytest.mark.parametrize(
+    ("step", "reason"),
+    [
+        ({"chord": turned(0.2), "angle": 0.4}, "the tangent turned too much"),
+        ({"chord": turned(0.1)}, "the step does not lie along the branch"),
+        ({"contraction": 0.3}, "Newton's method contracts too slowly"),
+        ({"angle": 2.0}, "the tangent turned back"),
+        ({"chord": 0.0 * FLAT}, "the step has no length"),
+    ],
+)
+def test_each_reason_refuses_a_step_and_shortens_it(step, reason):
+    verdict = judged(**step)
+    assert not verdict.accepted
+    assert verdict.reason == reason
+    assert 0.5 <= verdict.factor < 1.0
+
+
+@pytest.mark.parametrize(
+    ("step", "factor"),
+    [
+        ({}, 2.0),
+        ({"chord": turned(0.1), "angle": 0.2}, 0.7 * 0.3 / 0.2),
+        ({"contraction": CONTRACTION}, 0.7),
+        ({"iterations": 8}, 0.5),
+        ({"iterations": 5}, 0.8),
+    ],
+)
+def test_a_good_step_says_how_long_the_next_may_be(step, factor):
+    verdict = judged(**step)
+    assert verdict.accepted
+    assert verdict.length == pytest.approx(0.1)
+    assert verdict.factor == pytest.approx(factor)

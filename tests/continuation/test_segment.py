@@ -1,0 +1,44 @@
+"""The branch between two of its points."""
+
+import numpy as np
+import pytest
+
+from racs_bif.continuation import StepSettings
+from racs_bif.continuation.building import Builder
+from racs_bif.continuation.scaling import Scaling
+from racs_bif.continuation.segment import Segment
+
+
+@pytest.fixture
+def quintic(kinds):
+    """The branch x = p**5 from p = -0.5 to 0.5: the cubic's error is odd about the middle."""
+    problem = kinds.Scalar(
+        lambda x, p: x - p**5, lambda x, p: 1.0, lambda x, p: -5.0 * p**4, spectral=False
+    )
+    scaling, builder = Scaling(1.0, np.ones(1)), Builder(problem, (), 0)
+
+    def end(p):
+        tangent = np.array([5.0 * p**4, 1.0])
+        return builder.point(np.array([p**5, p]), tangent / scaling.norm(tangent), p, 0)
+
+    return Segment(builder, scaling, StepSettings(), end(-0.5), end(0.5))
+
+
+def error(z):
+    return abs(z[0] - z[1] ** 5)
+
+
+def test_the_cubic_goes_through_the_nearest_points_known(quintic):
+    before = [error(quintic.interpolate(at)[0]) for at in (0.25, 0.75)]
+    quintic.correct(0.5)
+    after = [error(quintic.interpolate(at)[0]) for at in (0.25, 0.75)]
+    assert min(before) > 3e-3
+    assert max(after) < 0.6 * min(before)
+
+
+def test_a_cubic_worse_than_foreseen_is_corrected(quintic):
+    # Almost nothing is to be corrected near the middle, so that little is expected elsewhere.
+    quintic.correct(0.49999)
+    z, _, iterations = quintic.correct(0.25)
+    assert error(z) < 1e-12
+    assert iterations > 0
