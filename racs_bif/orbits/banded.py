@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from racs_bif.orbits.stages import AdjointStages
+from racs_bif.orbits.stages import Stages
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,7 +70,7 @@ def band(pattern: NDArray[np.bool_]) -> Band:
     return Band(pattern, order, rows, columns, below, above)
 
 
-class BandedStages(AdjointStages):
+class BandedStages(Stages):
     """One banded matrix of all intervals.
 
     Parameters
@@ -91,8 +91,7 @@ class BandedStages(AdjointStages):
     """
 
     def __init__(self, coefficients: Gauss, jacobians: Array, tau: Array, shape: Band) -> None:
-        super().__init__(coefficients, jacobians.shape[-1])
-        self._count = len(tau)
+        self._gauss, self._size, self._count = coefficients, jacobians.shape[-1], len(tau)
         self._order = shape.order
         self._back = np.argsort(shape.order)
         degree = coefficients.degree
@@ -122,12 +121,16 @@ class BandedStages(AdjointStages):
             raise np.linalg.LinAlgError("the equations of an interval are singular")
         self._factors = lu, pivots
 
-    def _transposed(self, columns: Array) -> Array:
-        width = columns.shape[-1]
-        shape = (width, 1, self._gauss.degree, self._size)
-        same = np.broadcast_to(columns.T.reshape(shape), (width, self._count, *shape[2:]))
-        found = self._apply(same, transposed=1)
-        return np.ascontiguousarray(found.reshape(width, self._count, -1).transpose(1, 2, 0))
+    def transitions(self) -> Array:
+        """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
+        g, size = self._gauss, self._size
+        starts = np.multiply.outer(np.eye(size), g.row_sums).swapaxes(1, 2)[:, None]
+        moved = self.at_ends(np.broadcast_to(starts, (size, self._count, g.degree, size)))
+        return np.asarray(moved.transpose(1, 2, 0) + g.end_start * np.eye(size))
+
+    def at_ends(self, rhs: Array) -> Array:
+        """Return what B^-1 rhs adds at the ends of the intervals (c, N, n)."""
+        return np.asarray(self._gauss.end @ self.solve(rhs))
 
     def solve(self, rhs: Array) -> Array:
         """Return B^-1 rhs."""

@@ -39,7 +39,7 @@ class CollocatedProblem(OrbitProblem):
 
     def __init__(self) -> None:
         self._found: tuple[Array, Collocated] | None = None
-        self._base: tuple[Array, Linearised] | None = None
+        self._bases: list[tuple[Array, Linearised]] = []
         self._floquet: tuple[Array, Floquet] | None = None
 
     @abstractmethod
@@ -68,12 +68,12 @@ class CollocatedProblem(OrbitProblem):
 
     def linearised(self, z: Array) -> Linearised:
         """Return the linearised equations at `z`, or where they are known within rounding of it."""
-        if self._base is not None:
-            known, linearised = self._base
+        for known, linearised in self._bases:
             if len(known) == len(z) and self._alike(known, z) and self._distance(known, z) < _SAME:
                 return linearised
         linearised = self.equations.linearised(self.at(z), self.reference(z).scales)
-        self._base = (np.array(z), linearised)
+        # two: where the mesh was adapted, detectors still ask for the orbit on the one before
+        self._bases = [(np.array(z), linearised), *self._bases[:1]]
         return linearised
 
     def _alike(self, known: Array, z: Array) -> bool:

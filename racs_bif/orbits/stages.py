@@ -58,19 +58,26 @@ def interval_matrices(coefficients: Gauss, jacobians: Array, tau: Array) -> Arra
     return matrix.reshape(count, degree * size, degree * size)
 
 
-class AdjointStages(Stages):
-    """Transition matrices by the adjoint equations: as many right-hand sides as states.
+class DenseStages(Stages):
+    """One dense matrix of m n unknowns an interval.
 
     Parameters
     ----------
     coefficients : Gauss
         Of the degree.
-    size : int
-        Number of states n.
+    matrices : array (N, m n, m n)
+        From `interval_matrices`.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        If an interval's matrix is singular: it is too long.
     """
 
-    def __init__(self, coefficients: Gauss, size: int) -> None:
-        self._gauss, self._size = coefficients, size
+    def __init__(self, coefficients: Gauss, matrices: Array) -> None:
+        self._gauss = coefficients
+        self._size = matrices.shape[-1] // coefficients.degree
+        self._factorise(matrices)
 
     def transitions(self) -> Array:
         """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
@@ -91,33 +98,12 @@ class AdjointStages(Stages):
         return np.asarray((rows @ self._ends)[:, :, 0])
 
     @abstractmethod
-    def _transposed(self, columns: Array) -> Array:
-        """Return B^-T (N, m n, c) times the same columns (m n, c) for all intervals."""
-
-
-class DenseStages(AdjointStages):
-    """One dense matrix of m n unknowns an interval.
-
-    Parameters
-    ----------
-    coefficients : Gauss
-        Of the degree.
-    matrices : array (N, m n, m n)
-        From `interval_matrices`.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If an interval's matrix is singular: it is too long.
-    """
-
-    def __init__(self, coefficients: Gauss, matrices: Array) -> None:
-        super().__init__(coefficients, matrices.shape[-1] // coefficients.degree)
-        self._factorise(matrices)
-
-    @abstractmethod
     def _factorise(self, matrices: Array) -> None:
         """Take the matrices B (N, m n, m n)."""
+
+    @abstractmethod
+    def _transposed(self, columns: Array) -> Array:
+        """Return B^-T (N, m n, c) times the same columns (m n, c) for all intervals."""
 
 
 class InvertedStages(DenseStages):

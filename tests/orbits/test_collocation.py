@@ -191,7 +191,7 @@ def test_systems_of_few_varying_entries_are_solved_by_modes(vehicle):
 def test_other_systems_are_solved_by_factors(vehicle, monkeypatch):
     problem, z = vehicle
     monkeypatch.setattr(problem.field, "structure", lambda _p: None)
-    monkeypatch.setattr(problem, "_base", None)
+    monkeypatch.setattr(problem, "_bases", [])
     assert isinstance(problem.linearised(z).stages, FactoredStages)
     assert_solves(problem, z)
 
@@ -199,7 +199,7 @@ def test_other_systems_are_solved_by_factors(vehicle, monkeypatch):
 def test_modes_that_are_nearly_dependent_are_not_used(vehicle, monkeypatch):
     problem, z = vehicle
     monkeypatch.setattr("racs_bif.orbits.equations.CONDITION", 1.0)
-    monkeypatch.setattr(problem, "_base", None)
+    monkeypatch.setattr(problem, "_bases", [])
     assert isinstance(problem.linearised(z).stages, FactoredStages)
 
 
