@@ -12,12 +12,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from analyses._pinned import pinned, titled
-    from analyses._swept import CAVEAT, computed, hopf_values, part
-    from racs_bif.plots.sweep import Case
+    from analyses._compared import sweeps
+    from analyses._pinned import pinned
+    from analyses._swept import CAVEAT, hopf_values
 else:
-    from racs_bif.shelf.analyses._pinned import pinned, titled
-    from racs_bif.shelf.analyses._swept import CAVEAT, computed, hopf_values, part
+    from racs_bif.shelf.analyses._compared import sweeps
+    from racs_bif.shelf.analyses._pinned import pinned
+    from racs_bif.shelf.analyses._swept import CAVEAT, hopf_values
 
 SPAN: Final = (0.02, 0.5)
 SPEED: Final = 20.0
@@ -48,21 +49,17 @@ def run(
     """
     calibrated = load_model("racs").parameters["C_s"]
     own = pinned({"u": SPEED, "c": PAPER})
-    cases: list[Case] = []
-    for k, (stiffness, source) in enumerate(((calibrated, "Fig. 3"), (own, "Fig. 9"))):
-        cases.append(
-            computed(
-                titled(stiffness, source),
-                {"u": SPEED, "C_s": stiffness},
-                "c",
-                SPAN,
-                marks={"the paper's Hopf point": PAPER},
-                members=members,
-                duration=duration,
-                points=points,
-                report=part(progress, k, 2),
-            )
-        )
+    cases = sweeps(
+        {"Fig. 3": calibrated, "Fig. 9": own},
+        {"u": SPEED},
+        "c",
+        SPAN,
+        marks={"the paper's Hopf point": PAPER},
+        members=members,
+        duration=duration,
+        points=points,
+        progress=progress,
+    )
     figure = picture(cases, columns=2, height=2.6)
     numbers = {"C_s": [calibrated, own], "hopf_c": [hopf_values(case, "c") for case in cases]}
     caption = (

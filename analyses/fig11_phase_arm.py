@@ -6,21 +6,18 @@ from typing import TYPE_CHECKING, Final
 
 from racs_bif import load_model
 from racs_bif.plots.plate import Plate, plain, write_plate
-from racs_bif.plots.text import symbol
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from analyses._pinned import pinned, titled
-    from analyses._ridden import ride
+    from analyses._compared import rides
+    from analyses._pinned import pinned
     from analyses._shown import method, numbers_of, portraits, told
-    from analyses._swept import part
 else:
-    from racs_bif.shelf.analyses._pinned import pinned, titled
-    from racs_bif.shelf.analyses._ridden import ride
+    from racs_bif.shelf.analyses._compared import rides
+    from racs_bif.shelf.analyses._pinned import pinned
     from racs_bif.shelf.analyses._shown import method, numbers_of, portraits, told
-    from racs_bif.shelf.analyses._swept import part
 
 VALUES: Final = (0.2, 0.3)
 """Of c [m]."""
@@ -51,24 +48,24 @@ def run(
     """
     calibrated = load_model("racs").parameters["C_s"]
     own = pinned({"u": SPEED, "c": 0.15})
-    rides = {}
-    for stiffness, source in ((calibrated, "Fig. 3"), (own, "Fig. 9")):
-        for value in VALUES:
-            title = f"{symbol('c')} = {value:g} m, {titled(stiffness, source)}"
-            condition = {"u": SPEED, "c": value, "C_s": stiffness}
-            rides[title] = ride(
-                condition, duration=duration, step=step, points=points, parameter="c", span=SPAN
-            )
-            report = part(progress, len(rides) - 1, 2 * len(VALUES))
-            if report is not None:
-                report(0.9)
+    found = rides(
+        {"Fig. 3": calibrated, "Fig. 9": own},
+        {"u": SPEED},
+        "c",
+        VALUES,
+        span=SPAN,
+        duration=duration,
+        step=step,
+        points=points,
+        progress=progress,
+    )
     caption = (
-        method(list(rides.values()), "u", "m_c", "alpha", "delta_f"),
+        method(list(found.values()), "u", "m_c", "alpha", "delta_f"),
         "The paper: periodic motion at c = 0.2 m, chaotic motion at c = 0.3 m. The stiffness of "
         "Fig. 3 and the one that puts the Hopf point of Fig. 9 at 0.15 m; see the analysis `chaos` "
         "for all between.",
-        " ".join(told(title, found) for title, found in rides.items()),
+        " ".join(told(title, one) for title, one in found.items()),
     )
-    numbers = {plain(title): numbers_of(found) for title, found in rides.items()}
+    numbers = {plain(title): numbers_of(one) for title, one in found.items()}
     plate = Plate(__doc__.strip(), caption, numbers)
-    return write_plate(out, "fig11_phase_arm", portraits(rides), plate)
+    return write_plate(out, "fig11_phase_arm", portraits(found), plate)

@@ -6,21 +6,18 @@ from typing import TYPE_CHECKING, Final
 
 from racs_bif import load_model
 from racs_bif.plots.plate import Plate, plain, write_plate
-from racs_bif.plots.text import symbol
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from analyses._pinned import pinned, titled
-    from analyses._ridden import ride
+    from analyses._compared import rides
+    from analyses._pinned import pinned
     from analyses._shown import method, numbers_of, portraits, told
-    from analyses._swept import part
 else:
-    from racs_bif.shelf.analyses._pinned import pinned, titled
-    from racs_bif.shelf.analyses._ridden import ride
+    from racs_bif.shelf.analyses._compared import rides
+    from racs_bif.shelf.analyses._pinned import pinned
     from racs_bif.shelf.analyses._shown import method, numbers_of, portraits, told
-    from racs_bif.shelf.analyses._swept import part
 
 VALUES: Final = (30.0,)
 """Of m_c [kg]."""
@@ -54,24 +51,24 @@ def run(
     """
     calibrated = load_model("racs").parameters["C_s"]
     own = pinned({"u": SPEED, "c": ARM, "m_c": MARGIN})
-    rides = {}
-    for stiffness, source in ((calibrated, "Fig. 3"), (own, "shimmy below 60 kg")):
-        for value in VALUES:
-            title = f"{symbol('m_c')} = {value:g} kg, {titled(stiffness, source)}"
-            condition = {"u": SPEED, "c": ARM, "m_c": value, "C_s": stiffness}
-            rides[title] = ride(
-                condition, duration=duration, step=step, points=points, parameter="m_c", span=SPAN
-            )
-            report = part(progress, len(rides) - 1, 2 * len(VALUES))
-            if report is not None:
-                report(0.9)
+    found = rides(
+        {"Fig. 3": calibrated, "shimmy below 60 kg": own},
+        {"u": SPEED, "c": ARM},
+        "m_c",
+        VALUES,
+        span=SPAN,
+        duration=duration,
+        step=step,
+        points=points,
+        progress=progress,
+    )
     caption = (
-        method(list(rides.values()), "u", "c", "alpha", "delta_f"),
+        method(list(found.values()), "u", "c", "alpha", "delta_f"),
         "The paper: periodic motion. It holds where straight running is unstable: the second "
         f"stiffness is one that puts the exact Hopf point at m_c = {MARGIN:g} kg, so that 30 kg "
         "shimmies.",
-        " ".join(told(title, found) for title, found in rides.items()),
+        " ".join(told(title, one) for title, one in found.items()),
     )
-    numbers = {plain(title): numbers_of(found) for title, found in rides.items()}
+    numbers = {plain(title): numbers_of(one) for title, one in found.items()}
     plate = Plate(__doc__.strip(), caption, numbers)
-    return write_plate(out, "fig12_phase_mass", portraits(rides), plate)
+    return write_plate(out, "fig12_phase_mass", portraits(found), plate)

@@ -6,21 +6,18 @@ from typing import TYPE_CHECKING, Final
 
 from racs_bif import load_model
 from racs_bif.plots.plate import Plate, plain, write_plate
-from racs_bif.plots.text import symbol
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from analyses._pinned import pinned, titled
-    from analyses._ridden import ride
+    from analyses._compared import rides
+    from analyses._pinned import pinned
     from analyses._shown import method, numbers_of, portraits, told
-    from analyses._swept import part
 else:
-    from racs_bif.shelf.analyses._pinned import pinned, titled
-    from racs_bif.shelf.analyses._ridden import ride
+    from racs_bif.shelf.analyses._compared import rides
+    from racs_bif.shelf.analyses._pinned import pinned
     from racs_bif.shelf.analyses._shown import method, numbers_of, portraits, told
-    from racs_bif.shelf.analyses._swept import part
 
 VALUES: Final = (0.04, 0.12)
 """Of delta_f [rad]."""
@@ -51,28 +48,23 @@ def run(
     """
     calibrated = load_model("racs").parameters["C_s"]
     own = pinned({"u": SPEED, "delta_f": 0.08})
-    rides = {}
-    for stiffness, source in ((calibrated, "Fig. 3"), (own, "Fig. 13")):
-        for value in VALUES:
-            title = f"{symbol('delta_f')} = {value:g} rad, {titled(stiffness, source)}"
-            condition = {"u": SPEED, "delta_f": value, "C_s": stiffness}
-            rides[title] = ride(
-                condition,
-                duration=duration,
-                step=step,
-                points=points,
-                parameter="delta_f",
-                span=SPAN,
-            )
-            report = part(progress, len(rides) - 1, 2 * len(VALUES))
-            if report is not None:
-                report(0.9)
+    found = rides(
+        {"Fig. 3": calibrated, "Fig. 13": own},
+        {"u": SPEED},
+        "delta_f",
+        VALUES,
+        span=SPAN,
+        duration=duration,
+        step=step,
+        points=points,
+        progress=progress,
+    )
     caption = (
-        method(list(rides.values()), "u", "c", "m_c", "alpha"),
+        method(list(found.values()), "u", "c", "m_c", "alpha"),
         "The paper: periodic motion at 0.04 rad, a stable focus at 0.12 rad. The stiffness of "
         "Fig. 3, and the one that puts the Hopf point of Fig. 13 at 0.08 rad.",
-        " ".join(told(title, found) for title, found in rides.items()),
+        " ".join(told(title, one) for title, one in found.items()),
     )
-    numbers = {plain(title): numbers_of(found) for title, found in rides.items()}
+    numbers = {plain(title): numbers_of(one) for title, one in found.items()}
     plate = Plate(__doc__.strip(), caption, numbers)
-    return write_plate(out, "fig14_phase_delta_f", portraits(rides), plate)
+    return write_plate(out, "fig14_phase_delta_f", portraits(found), plate)
