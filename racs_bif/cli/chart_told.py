@@ -39,19 +39,11 @@ def tell(result: Chart | ChartSlices, arguments: Namespace, summary: str) -> Non
 
 
 def _tell_chart(chart: Chart, screen: Any) -> None:  # noqa: ANN401 - rich's console
-    from rich.table import Table
-
+    from racs_bif.cli.tables import titled_table
     from racs_bif.results.chart import describe_count
     from racs_bif.results.chart_summary import GRID
 
-    table = Table(
-        title="\nRegions",
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        pad_edge=False,
-        collapse_padding=True,
-    )
+    table = titled_table("Regions")
     table.add_column("", no_wrap=True)
     for title in ("% of plane", *(f"at {name}" for name in chart.parameters)):
         table.add_column(title, justify="right", no_wrap=True)
@@ -62,14 +54,7 @@ def _tell_chart(chart: Chart, screen: Any) -> None:  # noqa: ANN401 - rich's con
             *(f"{value:.5g}" for value in region.place),
         )
     screen.print(table)
-    table = Table(
-        title="\nBoundaries",
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        pad_edge=False,
-        collapse_padding=True,
-    )
+    table = titled_table("Boundaries")
     for title in ("", "", *chart.parameters, chart.system.frequency_unit or "omega", "l1"):
         table.add_column(title, justify="left" if not title else "right", no_wrap=True)
     for k, boundary in enumerate(chart.boundaries):

@@ -221,16 +221,9 @@ def multiplier_table(orbit: Branch) -> Table:
 
 
 def _table(title: str, columns: tuple[str, ...]) -> Table:
-    from rich.table import Table
+    from racs_bif.cli.tables import titled_table
 
-    table = Table(
-        title=f"\n{title}",
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        pad_edge=False,
-        collapse_padding=True,
-    )
+    table = titled_table(title)
     table.add_column(columns[0], no_wrap=True)
     for column in columns[1:]:
         table.add_column(column, justify="right" if column else "left", no_wrap=True)

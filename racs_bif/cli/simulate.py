@@ -250,18 +250,10 @@ def _tell(history: TimeHistory, arguments: Namespace, summary: str) -> None:
 
 
 def _table(history: TimeHistory) -> Table:
-    from rich.table import Table
-
+    from racs_bif.cli.tables import titled_table
     from racs_bif.results.history_summary import column_summary
 
-    table = Table(
-        title="\nRange and period in the second half",
-        title_justify="left",
-        title_style="bold",
-        box=None,
-        pad_edge=False,
-        collapse_padding=True,
-    )
+    table = titled_table("Range and period in the second half")
     table.add_column("", no_wrap=True)
     for title in (
         "least",

@@ -39,7 +39,7 @@ def special_table(diagram: Diagram) -> Table:
     """Return the special points: where, how far from the exact one, frequency, criticality."""
     system = diagram.branches[0].system
     name = diagram.branches[0].parameters[0]
-    table = _table("Special points")
+    table = titled_table("Special points")
     table.add_column("point", no_wrap=True)
     table.add_column("on", no_wrap=True)
     times = system.frequency_unit or "omega", cycles_unit(system.time_unit) or "omega/2pi"
@@ -58,7 +58,7 @@ def operating_table(diagram: Diagram) -> Table:
     """Return the points the user asked for: state or range, period, stability."""
     system = diagram.branches[0].system
     name, shown = diagram.branches[0].parameters[0], system.shown or system.states[0]
-    table = _table("Points asked for")
+    table = titled_table("Points asked for")
     table.add_column("point", no_wrap=True)
     table.add_column("on", no_wrap=True)
     for title in (
@@ -77,7 +77,7 @@ def operating_table(diagram: Diagram) -> Table:
 
 def branch_table(diagram: Diagram) -> Table:
     """Return the branches: how many points, stability, and why they ended."""
-    table = _table("Branches")
+    table = titled_table("Branches")
     table.add_column("branch", no_wrap=True)
     table.add_column("points", justify="right", no_wrap=True)
     table.add_column(f"stability along {diagram.branches[0].parameters[0]}, and why it ended")
@@ -87,7 +87,8 @@ def branch_table(diagram: Diagram) -> Table:
     return table
 
 
-def _table(title: str) -> Table:
+def titled_table(title: str) -> Table:
+    """Return an empty table with a heading, as the terminal shows all of them."""
     return Table(
         title=f"\n{title}",
         title_justify="left",
