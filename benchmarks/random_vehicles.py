@@ -5,7 +5,8 @@ is done is in a file of one JSON line a vehicle, and a run goes on where the las
 ``--only K`` does one vehicle and shows all that is known of it.
 
 Of each vehicle equilibria are followed in the speed and certified on the exact equations, a small
-chart is made in speed and stiffness, and of one in ``--share`` the orbits from the first Hopf point
+chart is made in speed and stiffness, the first Hopf
+point is followed there, and of one in ``--share`` the orbits from the first Hopf point
 are followed. UNEXPECTED is: an exception that is not one of ours, a warning that reaches the user,
 a Hopf point that the exact equations refuse, a stability that the argument principle contradicts,
 an orbit that does not satisfy the exact equations.
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from racs_bif.results.branch import Branch, Profile
     from racs_bif.results.certificate import Certificate
     from racs_bif.results.chart import Chart
+    from racs_bif.results.special import SpecialPoint
 
 VARIANTS: Final = ("paper", "restoring", "lagrange", "paper12", "printed", "printed12")
 LIKELY: Final = (0.4, 0.2, 0.2, 0.1, 0.05, 0.05)
@@ -50,6 +52,8 @@ STARTS: Final = 100
 LIKELY_STATE: Final = (10.0, 2.0, 0.5, 0.1)
 """Deviations of the random states (v, w, delta_c and its rate) that equilibria are looked for from,
 and how many of them."""
+ON_AXIS: Final = 1e-5
+"""By how much the frequency of a root on the imaginary axis may differ from a Hopf curve's."""
 PLACES: Final = 4
 """Places of a chart at which roots are counted again."""
 _UNEXPECTED: Final = "UNEXPECTED"
@@ -127,6 +131,8 @@ def examine(index: int, *, share: int = 4, seconds: float = 60.0) -> dict[str, A
     if branch is not None:
         part("certify", lambda: _certify(branch))
         hopf = [point for point in branch.special if point.label == "H"]
+        if hopf:
+            part("curve", lambda: _curve(system, hopf[0]))
         if hopf and index % share == 0:
             method = METHODS[index // share % 2]
             part(f"orbits by {method}", lambda: _orbits(system, branch, method))
@@ -182,6 +188,24 @@ def _certify(branch: Branch) -> tuple[Certificate, str, str]:
         return certificate, "ok", ""
     findings = "; ".join(f"{check.subject}: {check.finding}" for check in certificate.failures)
     return certificate, _UNEXPECTED, findings
+
+
+def _curve(system: System, hopf: SpecialPoint) -> tuple[Branch, str, str]:
+    """Follow the exact Hopf point in speed and stiffness and count again at some of the points."""
+    stiffness = system.parameters["C_s"]
+    spans = {"u": SPEEDS, "C_s": (0.5 * stiffness, 2.0 * stiffness)}
+    curve = rb.continue_curve(hopf, ("u", "C_s"), spans, operator="exact")
+    for k in np.unique(np.linspace(0, len(curve) - 1, PLACES).astype(int)):
+        place = dict(zip(curve.parameters, map(float, curve.values[k]), strict=True))
+        at, omega = system.with_parameters(place), float(curve.measures["omega"][k])
+        guess = np.zeros(system.exact.size)
+        guess[: len(system.states)] = curve.states[k, : len(system.states)]
+        found = count_unstable(at.exact, at.exact.equilibrium(guess, at.values), at.values)
+        crosses = any(abs(root.imag - omega) < ON_AXIS * omega for root in found.on_line)
+        if not curve.measures["neutral"][k] and not crosses:
+            where = ", ".join(f"{name} = {value:.6g}" for name, value in place.items())
+            return curve, _UNEXPECTED, f"no exact root at i {omega:.6g} at {where}"
+    return curve, "early" if curve.early else "ok", curve.stopped
 
 
 def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, str]:
@@ -244,7 +268,12 @@ def _chart(system: System, index: int) -> tuple[Chart, str, str]:
     low, high = np.array(spans).T
     places = low + random.random((PLACES, 2)) * (high - low)
     for place, told in zip(places, chart.unstable_on(places), strict=True):
-        counted = _counts(system.with_parameters(dict(zip(("u", "C_s"), place, strict=True))))
+        at = system.with_parameters(dict(zip(("u", "C_s"), place, strict=True)))
+        counted = set[int]()
+        for count in _counts(at) if told >= 0 else ():
+            counted.add(count)
+            if told in counted:
+                break
         if counted and told >= 0 and told not in counted:
             where = f"u = {place[0]:.6g}, C_s = {place[1]:.6g}"
             wrong = f"at {where} the chart says {told} unstable roots, counted are {counted}"
@@ -252,8 +281,8 @@ def _chart(system: System, index: int) -> tuple[Chart, str, str]:
     return chart, "early" if chart.early else "ok", " | ".join(chart.troubles)
 
 
-def _counts(system: System) -> set[int]:
-    """Return the numbers of unstable roots of the equilibria there, as far as they are known.
+def _counts(system: System) -> Iterator[int]:
+    """Yield the numbers of unstable roots of the equilibria there, as they are found.
 
     The chart's equilibrium is continued from elsewhere; it need not be the one that Newton's
     method finds from the model's guess.
@@ -266,11 +295,7 @@ def _counts(system: System) -> set[int]:
             X = system.exact.equilibrium(random.uniform(0.0, 1.5) * guess, p)
             if not any(np.abs(X - Y).max() < 1e-6 for Y in found):
                 found.append(X)
-    counts = set()
-    for X in found:
-        with suppress(ConvergenceError):
-            counts.add(count_unstable(system.exact, X, p).unstable)
-    return counts
+                yield count_unstable(system.exact, X, p).unstable
 
 
 def table(rows: Iterable[dict[str, Any]]) -> str:
@@ -291,14 +316,19 @@ def table(rows: Iterable[dict[str, Any]]) -> str:
 
 
 def read(path: Path) -> list[dict[str, Any]]:
-    """Return the rows of a file; a last line that was cut off is left out."""
-    rows = []
+    """Return the rows of a file, the last one of each vehicle; a line cut off is left out."""
+    rows = {}
     for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
         try:
-            rows.append(json.loads(line))
+            row = json.loads(line)
         except json.JSONDecodeError:
             continue
-    return rows
+        rows[row["index"]] = row
+    return list(rows.values())
+
+
+def _bad(row: dict[str, Any]) -> bool:
+    return any(outcome in {_UNEXPECTED, "too long"} for outcome, _ in row["parts"].values())
 
 
 def main() -> None:
@@ -308,6 +338,12 @@ def main() -> None:
     parser.add_argument("--share", type=int, default=4, help="orbits of one vehicle in so many")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds that a part may take")
     parser.add_argument("--file", type=Path, default=Path("random_vehicles.jsonl"))
+    parser.add_argument(
+        "--part", type=int, nargs=2, default=(0, 1), metavar=("K", "OF"), help="every OF-th, from K"
+    )
+    parser.add_argument(
+        "--again", action="store_true", help="examine again what was UNEXPECTED or took too long"
+    )
     parser.add_argument("--only", type=int, help="examine this vehicle alone")
     options = parser.parse_args()
     if options.only is not None:
@@ -315,10 +351,10 @@ def main() -> None:
         row = examine(options.only, share=1, seconds=options.limit)
         print(json.dumps(row, indent=1), *row.get("tracebacks", ()), sep="\n")
         return
-    done = {row["index"] for row in read(options.file)}
+    done = {row["index"] for row in read(options.file) if not (options.again and _bad(row))}
     with options.file.open("a", encoding="utf-8") as file:
         file.write("\n" if done else "")  # after a line that was cut off
-        for index in range(options.count):
+        for index in range(options.part[0], options.count, options.part[1]):
             if index not in done:
                 row = examine(index, share=options.share, seconds=options.limit)
                 file.write(json.dumps(row) + "\n")

@@ -17,6 +17,8 @@ from racs_bif.numerics.bracketing import root
 from racs_bif.symbolic.paths import ParameterPath
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from racs_bif.charts.boundary import Boundary
@@ -101,13 +103,6 @@ class Edge:
         self.start, self.end = start.place, end.place
         self.path = EdgePath(lattice.plane, self.start, self.end)
         self._crossings: list[list[Crossing]] = []
-
-    @property
-    def torn(self) -> bool:
-        """Whether the equilibria at its ends are not continued into each other."""
-        if NOTHING in {self.a.count, self.b.count}:
-            return False
-        return not self._same_sheet(1.0, self.b.X)
 
     def beyond(self) -> tuple[Edge, Edge]:
         """Return straight lines from both ends through the other one to the box."""
@@ -268,7 +263,7 @@ class Edge:
             if reached[0] < 1.0:
                 return share, float("nan")
             at = self._place(share)[:, None]
-            jacobian = sheet.equations(X, self.lattice.plane.vectors(at))[1][0]
+            jacobian = sheet.equations(self.lattice.plane.vectors(at))(X)[1][0]
             scale = np.linalg.norm(jacobian, axis=1, keepdims=True)
             return share, float(np.linalg.det(jacobian / np.where(scale > 0.0, scale, 1.0)))
 
@@ -314,3 +309,24 @@ class Edge:
                 if near and (seed.kind != "hopf" or abs(omega - seed.omega) < 0.02 * omega):
                     return True
         return False
+
+
+def torn(edges: Sequence[Edge]) -> list[bool]:
+    """Say of edges whether the equilibria at their ends are not continued into each other."""
+    both = [k for k, edge in enumerate(edges) if NOTHING not in {edge.a.count, edge.b.count}]
+    told = [False] * len(edges)
+    if not both:
+        return told
+    lattice = edges[0].lattice
+    start, end = (
+        [
+            np.array([getattr(getattr(edges[k], side), what) for k in both]).T
+            for what in ("X", "place")
+        ]
+        for side in ("a", "b")
+    )
+    own, reached = lattice.sheet.follow(start[0], start[1], end[1])
+    for column, k in enumerate(both):
+        same = alike(own[:, column], end[0][:, column], lattice.scale)
+        told[k] = not (reached[column] == 1.0 and same)
+    return told

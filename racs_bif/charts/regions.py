@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.charts.faces import Face, divide
-from racs_bif.charts.lattice import NOTHING, Lattice
+from racs_bif.charts.lattice import NOTHING, UNCOUNTED, Lattice
 from racs_bif.charts.pieces import away
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ _SAMPLES = 60
 _ALMOST = 0.95
 _SLIVER = 1e-6
 _EDGE = 1e-7
+_MIXED = 0.1
+"""Share of nodes with another count from which a region has none: nothing parts its equilibria."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,8 @@ class Region:
     place : array (2,)
         Well inside it.
     nodes, disagreeing : int
-        How many nodes of the lattice are in it, and how many of them have another count.
+        How many nodes of the lattice are in it, and how many of them have another count than
+        the one farthest from its outline.
     """
 
     face: Face
@@ -71,6 +74,8 @@ def regions(lattice: Lattice, boundaries: list[Boundary]) -> tuple[Region, ...]:
         else:
             count = _counted(lattice, place)
         wrong = int(np.count_nonzero(counts[inside] != count))
+        if wrong > _MIXED * len(inside):
+            count = UNCOUNTED
         found.append(Region(face, count, place, len(inside), wrong))
     return tuple(found)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.charts.boundary import Boundary, Seed, trace_boundary
-from racs_bif.charts.edges import Edge
+from racs_bif.charts.edges import Edge, torn
 from racs_bif.charts.lattice import NOTHING, Key, Lattice
 from racs_bif.errors import ConvergenceError
 
@@ -48,8 +48,10 @@ class Search:
         Edges whose ends differ for no boundary that was found, by their nodes or place in `chain`.
     chain : list of Edge
         Edges along folds, on the side of the equilibrium.
+    different : dict of (Key, Key) to bool
+        Edges, and whether their ends have different equilibria.
     torn : int
-        Edges whose ends have different equilibria: there are several over part of the plane.
+        How many of the search's edges have: there are several equilibria over part of the plane.
     troubles : list of str
         Boundaries that could not be traced.
     """
@@ -59,6 +61,7 @@ class Search:
     boundaries: list[Boundary] = field(default_factory=list)
     unexplained: list[EdgeKey | int] = field(default_factory=list)
     chain: list[Edge] = field(default_factory=list)
+    different: dict[EdgeKey, bool] = field(default_factory=dict)
     torn: int = 0
     troubles: list[str] = field(default_factory=list)
 
@@ -134,8 +137,12 @@ def _trace_all(
     edges: dict[EdgeKey, Edge],
     follow: Callable[[Seed], Boundary],
 ) -> None:
-    """Trace boundaries until they explain every edge, or no more can be found."""
-    hopeless: set[EdgeKey | int] = set()
+    """Trace boundaries until they explain every edge, or no more can be found.
+
+    Counts of different equilibria may differ: edges between such are `_trace_folds`'s.
+    """
+    apart = _tear(found, edges)
+    hopeless: set[EdgeKey | int] = {*apart}
     while True:
         new = False
         for key, edge in _all_edges(found, edges):
@@ -158,7 +165,9 @@ def _trace_all(
         if not new:
             break
     found.unexplained = [
-        key for key, edge in _all_edges(found, edges) if not edge.explained(found.boundaries)
+        key
+        for key, edge in _all_edges(found, edges)
+        if key not in apart and not edge.explained(found.boundaries)
     ]
 
 
@@ -168,10 +177,7 @@ def _trace_folds(
     follow: Callable[[Seed], Boundary],
 ) -> None:
     """Trace folds behind which the equilibria of neighbouring nodes are not the same."""
-    keys = _edges(found)
-    torn = [key for key in keys if edges[key].torn]
-    found.torn = len(torn)
-    for key in torn:
+    for key in _tear(found, edges):
         for line in edges[key].beyond():
             if line.explained(found.boundaries):
                 continue
@@ -182,6 +188,16 @@ def _trace_folds(
                 _keep(found, follow(seed))
             except (ConvergenceError, np.linalg.LinAlgError) as error:
                 found.troubles.append(f"a fold boundary could not be traced: {error}")
+
+
+def _tear(found: Search, edges: dict[EdgeKey, Edge]) -> list[EdgeKey]:
+    """Return the edges whose ends have different equilibria."""
+    keys = [key for key, _ in _all_edges(found, edges) if isinstance(key, tuple)]
+    new = [key for key in keys if key not in found.different]
+    found.different |= dict(zip(new, torn([edges[key] for key in new]), strict=True))
+    apart = [key for key in keys if found.different[key]]
+    found.torn = len(apart)
+    return apart
 
 
 def _keep(found: Search, boundary: Boundary) -> None:

@@ -10,6 +10,8 @@ import numpy as np
 from racs_bif.fractional.rational import RationalSystem
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from racs_bif.charts.plane import Plane
@@ -96,17 +98,33 @@ class Sheet:
             core[:, rows, columns] = _wide(compiled.varying_jacobian(X, padded), X).T
         return core
 
-    def equations(self, X: Array, P: Array) -> tuple[Array, Array]:
-        """Return residual (size, N) and Jacobian (N, size, size) of the equilibrium equations."""
-        value = _wide(self.compiled.core(X, self.compiled.padded(P)), X)
-        jacobian = self.core(X, P)
-        for j, law in enumerate(self.laws(P)):
-            row = self.ny + j
-            n, d = _static(*law.numerator), _static(*law.denominator)
-            value[row] = n * value[row] - d * X[row]
-            jacobian[:, row] *= n[:, None]
-            jacobian[:, row, row] -= d
-        return value, jacobian
+    def equations(self, P: Array) -> Callable[[Array], tuple[Array, Array]]:
+        """Return the equilibrium equations at parameters P (np, N).
+
+        Returns
+        -------
+        callable
+            Gives residual (size, N) and Jacobian (N, size, size) at states (size, N).
+        """
+        compiled, padded = self.compiled, self.compiled.padded(P)
+        rows, columns = compiled.varying_at
+        core = compiled.kernel("core").bind(padded)
+        varying = compiled.kernel("jacobian_varying").bind(padded) if len(rows) else None
+        fixed = np.zeros((P.shape[1], self.size, self.size))
+        fixed[:, *self._fixed] = compiled.kernel("jacobian_fixed").bind(padded)().T
+        static = [(_static(*law.numerator), _static(*law.denominator)) for law in self.laws(P)]
+
+        def at(X: Array) -> tuple[Array, Array]:
+            value, jacobian = core(X), fixed.copy()
+            if varying is not None:
+                jacobian[:, rows, columns] = varying(X).T
+            for row, (n, d) in enumerate(static, start=self.ny):
+                value[row] = n * value[row] - d * X[row]
+                jacobian[:, row] *= n[:, None]
+                jacobian[:, row, row] -= d
+            return value, jacobian
+
+        return at
 
     def newton(self, X: Array, P: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Solve near X (size, N), where Newton's method contracts at once.
@@ -120,8 +138,11 @@ class Sheet:
         found = np.zeros(X.shape[1], dtype=bool)
         moving, last = np.arange(X.shape[1]), np.full(X.shape[1], np.inf)
         with np.errstate(all="ignore"):
-            for iteration in range(_ITERATIONS):
-                step = self._step(X[:, moving], P[:, moving])
+            held, equations = moving, self.equations(P)
+            for _ in range(_ITERATIONS):
+                if len(moving) < len(held):
+                    held, equations = moving, self.equations(P[:, moving])
+                step = self._step(*equations(X[:, moving]))
                 X[:, moving] -= step
                 scale = 1.0 + np.abs(X[:, moving]).max(axis=0)
                 size = np.abs(step).max(axis=0) / scale
@@ -132,11 +153,9 @@ class Sheet:
                 moving = moving[~good & contracts & np.isfinite(size)]
                 if not len(moving):
                     break
-                del iteration
         return X, found
 
-    def _step(self, X: Array, P: Array) -> Array:
-        value, jacobian = self.equations(X, P)
+    def _step(self, value: Array, jacobian: Array) -> Array:
         bad = ~(np.isfinite(value).all(axis=0) & np.isfinite(jacobian).all(axis=(1, 2)))
         jacobian[bad] = np.eye(self.size)
         # A matrix singular to the last digit stops the whole batch: nudge it, Newton rejects it.

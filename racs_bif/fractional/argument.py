@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -34,6 +34,8 @@ _ON_CONTOUR = 1e-9  # distance in log s
 _ON_LINE = 1e-6
 _SHIFTS = (1e-7, 1e-6, 1e-5, 1e-4)
 _MOST_POINTS = 400_000
+
+_Ends: TypeAlias = "tuple[np.ndarray, ...]"
 
 
 class OnContourError(ConvergenceError):
@@ -118,33 +120,21 @@ def follow(ch: Characteristic, pieces: Sequence[Piece]) -> Change:
     OnContourError
         If roots lie on it.
     """
-    total, worst, evaluations = 0.0 + 0.0j, 0.0, 0
-    for piece in pieces:
-        change = _follow(ch, piece)
-        total += change.log
-        worst = max(worst, change.discrepancy)
-        evaluations += change.evaluations
-    return Change(total, worst, evaluations)
-
-
-def _follow(ch: Characteristic, piece: Piece) -> Change:
-    steps = max(3, int(np.ceil(abs(piece.stop - piece.start) / _SPACING)))
-    x = np.linspace(piece.start, piece.stop, steps + 1)
-    t = piece.t(x)
-    values = (x.astype(complex), t, *ch.log_det(t))
-    left, right = tuple(a[:-1] for a in values), tuple(a[1:] for a in values)
-    total, worst, evaluations = 0.0 + 0.0j, 0.0, len(x)
+    if not pieces:
+        return Change(0.0j, 0.0, 0)
+    left, right = _begun(ch, pieces)
+    total, worst, evaluations = 0.0j, 0.0, len(left[0]) + len(pieces)
     lost: list[complex] = []
     while len(left[0]):
         good, measured, error = _judge(left, right)
         total += complex(measured[good].sum())
         worst = max(worst, float(error[good].max(initial=0.0)))
-        tiny = ~good & (np.abs(right[1] - left[1]) < _ON_CONTOUR)
-        lost.extend(left[1][tiny])
+        tiny = ~good & (np.abs(right[2] - left[2]) < _ON_CONTOUR)
+        lost.extend(left[2][tiny])
         left, right = (tuple(a[~(good | tiny)] for a in side) for side in (left, right))
-        x = 0.5 * (left[0] + right[0]).real
-        t = piece.t(x)
-        middle = (x.astype(complex), t, *ch.log_det(t)) if len(x) else left
+        which, x = left[0], 0.5 * (left[1] + right[1])
+        t = _places(pieces, which, x)
+        middle = (which, x, t, *ch.log_det(t)) if len(x) else left
         evaluations += len(x)
         if evaluations > _MOST_POINTS:
             msg = "the phase of det Delta varies too fast to be followed; scale the model"
@@ -158,6 +148,26 @@ def _follow(ch: Characteristic, piece: Piece) -> Change:
     return Change(total, worst, evaluations)
 
 
+def _begun(ch: Characteristic, pieces: Sequence[Piece]) -> tuple[_Ends, _Ends]:
+    """Return the ends of the first steps: which piece, x, t, log det Delta and its derivative."""
+    counts = [max(3, int(np.ceil(abs(p.stop - p.start) / _SPACING))) + 1 for p in pieces]
+    which = np.repeat(np.arange(len(pieces)), counts)
+    x = np.concatenate(
+        [np.linspace(p.start, p.stop, count) for p, count in zip(pieces, counts, strict=True)]
+    )
+    t = _places(pieces, which, x)
+    values = (which, x, t, *ch.log_det(t))
+    steps = np.flatnonzero(which[1:] == which[:-1])
+    return tuple(a[steps] for a in values), tuple(a[steps + 1] for a in values)
+
+
+def _places(pieces: Sequence[Piece], which: np.ndarray, x: Array) -> Complex:
+    t = np.empty(len(x), dtype=complex)
+    for k in np.unique(which):
+        t[which == k] = pieces[k].t(x[which == k])
+    return t
+
+
 def _apart(places: Complex) -> Complex:
     """Return one place for each group that is close together."""
     kept: list[complex] = []
@@ -167,12 +177,10 @@ def _apart(places: Complex) -> Complex:
     return np.array(kept)
 
 
-def _judge(
-    left: tuple[Complex, ...], right: tuple[Complex, ...]
-) -> tuple[np.ndarray, Complex, Array]:
+def _judge(left: _Ends, right: _Ends) -> tuple[np.ndarray, Complex, Array]:
     """Return which steps are good, the measured changes, and their difference to the predicted."""
-    _, t0, log0, rate0 = left
-    _, t1, log1, rate1 = right
+    t0, log0, rate0 = left[2:]
+    t1, log1, rate1 = right[2:]
     step = t1 - t0
     with np.errstate(invalid="ignore"):
         predicted = 0.5 * (rate0 + rate1) * step

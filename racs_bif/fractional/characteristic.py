@@ -34,6 +34,11 @@ class Characteristic:
     core : array (n, n)
         The constant matrix.
 
+    Attributes
+    ----------
+    left_powers, right_powers : (array (n, k), array (n, k))
+        The diagonals' coefficients and exponents, a row each, filled up with zeros.
+
     Raises
     ------
     ParameterError
@@ -65,7 +70,7 @@ class Characteristic:
         if any(np.any(r.exponents < 0.0) for r in (*self.left, *self.right)):
             msg = "an exponent is negative; multiply the row by a power of s"
             raise ParameterError(msg)
-        self._left, self._right = _packed(self.left), _packed(self.right)
+        self.left_powers, self.right_powers = _packed(self.left), _packed(self.right)
 
     @classmethod
     def of_model(cls, model: ExactModel, X: Array, p: Array) -> Characteristic:
@@ -95,23 +100,23 @@ class Characteristic:
 
     def matrix(self, t: Complex, shift: Array | None = None) -> Complex:
         """Return Delta(exp(t)), (m, n, n) for t (m,), its rows divided by exp(shift)."""
-        return self._assemble(t, self._left[0], self._right[0], shift)
+        return self._assemble(t, self.left_powers[0], self.right_powers[0], shift)
 
     def slope(self, t: Complex, shift: Array | None = None) -> Complex:
         """Return the derivative of `matrix` by t."""
-        left, right = self._left, self._right
+        left, right = self.left_powers, self.right_powers
         return self._assemble(t, left[0] * left[1], right[0] * right[1], shift)
 
     def shift(self, t: Complex) -> Array:
         """Return logarithms (m, n) of the rows' largest powers, against overflow."""
-        exponents = np.concatenate([self._left[1], self._right[1]], axis=1)
+        exponents = np.concatenate([self.left_powers[1], self.right_powers[1]], axis=1)
         return np.asarray((exponents * np.real(t)[:, None, None]).max(axis=2))
 
     def _assemble(self, t: Complex, left: Array, right: Array, shift: Array | None) -> Complex:
         t = np.asarray(t, dtype=complex)[:, None, None]
         off = 0.0 if shift is None else shift[..., None]
-        diagonal = (left * np.exp(self._left[1] * t - off)).sum(axis=2)
-        weight = (right * np.exp(self._right[1] * t - off)).sum(axis=2)
+        diagonal = (left * np.exp(self.left_powers[1] * t - off)).sum(axis=2)
+        weight = (right * np.exp(self.right_powers[1] * t - off)).sum(axis=2)
         matrix = -weight[:, :, None] * self.core
         index = np.arange(self.size)
         matrix[:, index, index] += diagonal

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.laws import Complex, PowerSum
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from racs_bif.fractional.characteristic import Characteristic
+    from racs_bif.fractional.laws import Complex, PowerSum
     from racs_bif.symbolic.field import Array
 
 _BELOW_ONE = 0.9
@@ -90,33 +90,38 @@ def _outer(ch: Characteristic) -> float:
             "differentiates once closes a loop; put its input's derivative into the equations"
         )
         raise ConvergenceError(msg)
-    return _search(lambda x: _radius(_outer_ratios(ch, x, reach)) < _BELOW_ONE, +1.0)
+    ratios = _outer_ratios(ch, reach)
+    return _search(lambda x: _radius(ratios(x)) < _BELOW_ONE, +1.0)
 
 
-def _outer_ratios(ch: Characteristic, log_radius: float, reach: float) -> Array:
-    """Return bounds (n, n) of entries over their row's diagonal, infinite if that may vanish."""
-    n = ch.size
+def _outer_ratios(ch: Characteristic, reach: float) -> Callable[[float], Array]:
+    """Return bounds (n, n), at log |s|, of entries over their diagonal: inf where that may be 0.
+
+    A diagonal over its highest power of |s| is at least what its `helpers` are for |arg s| <= pi,
+    less all other terms.
+    """
+    coefficients, exponents = ch.left_powers
+    highest = np.array([row.exponents[-1] for row in ch.left])
+    lower = np.where(coefficients != 0.0, highest[:, None] - exponents, 0.0)
+    helps = np.zeros(coefficients.shape, dtype=bool)
+    for i, row in enumerate(ch.left):
+        helps[i, : len(row.exponents)] = _helpers(row, reach)
+    least = np.abs(coefficients) * np.where(helps, np.cos(np.pi * lower), -1.0)
+    weights = ch.right_powers[0], ch.right_powers[1] - highest[:, None]
     absolute = np.abs(ch.core)
-    ratios = np.full((n, n), np.inf)
-    for i, (left, right) in enumerate(zip(ch.left, ch.right, strict=True)):
-        diagonal, highest = _least(left, log_radius, reach)
-        weight = _bound(PowerSum(right.coefficients, right.exponents - highest), log_radius)
-        if absolute[i, i] > 0.0:
-            diagonal -= weight * absolute[i, i]
-        if diagonal > 0.0:
-            ratios[i] = weight * absolute[i] / diagonal
-            ratios[i, i] = 0.0
+    own = absolute.diagonal()
+
+    def ratios(log_radius: float) -> Array:
+        weight = _bounds(*weights, log_radius)
+        diagonal = (least * np.exp(-lower * log_radius)).sum(axis=1)
+        diagonal -= np.where(own > 0.0, weight, 0.0) * own
+        fine = diagonal > 0.0
+        size = weight[:, None] * absolute / np.where(fine, diagonal, 1.0)[:, None]
+        size[~fine] = np.inf
+        np.fill_diagonal(size, np.where(fine, 0.0, np.inf))
+        return np.asarray(size)
+
     return ratios
-
-
-def _least(row: PowerSum, log_radius: float, reach: float) -> tuple[float, float]:
-    """Return a lower bound of a sum for |arg s| <= pi, over a power of |s|, and that power."""
-    highest = row.exponents[-1]
-    lower = highest - row.exponents
-    helps = _helpers(row, reach)
-    size = np.abs(row.coefficients) * np.exp(-lower * log_radius)
-    with_it = float((size * np.cos(np.pi * lower))[helps].sum())
-    return with_it - float(size[~helps].sum()), float(highest)
 
 
 def _helpers(row: PowerSum, reach: float) -> NDArray[np.bool_]:
@@ -178,20 +183,18 @@ def _is_singular(matrix: Array) -> bool:
 
 def _inner(ch: Characteristic, static: Array) -> float:
     inverse, absolute = np.abs(np.linalg.inv(static)), np.abs(ch.core)
-    left = [_without_constant(row) for row in ch.left]
-    right = [_without_constant(row) for row in ch.right]
+    left, right = (
+        (np.where(exponents > 0.0, coefficients, 0.0), exponents)
+        for coefficients, exponents in (ch.left_powers, ch.right_powers)
+    )
+    index = np.arange(ch.size)
 
     def small(log_radius: float) -> bool:
-        change = np.array([_bound(row, log_radius) for row in right])[:, None] * absolute
-        change += np.diag([_bound(row, log_radius) for row in left])
+        change = _bounds(*right, log_radius)[:, None] * absolute
+        change[index, index] += _bounds(*left, log_radius)
         return _radius(inverse @ change) < _BELOW_ONE
 
     return _search(small, -1.0)
-
-
-def _without_constant(row: PowerSum) -> PowerSum:
-    keep = row.exponents > 0.0
-    return PowerSum(row.coefficients[keep], row.exponents[keep])
 
 
 def _plateau(ch: Characteristic, outer: float) -> tuple[float, float]:
@@ -214,9 +217,10 @@ def _plateau(ch: Characteristic, outer: float) -> tuple[float, float]:
     return float(radii[first + 1]), float(order[last])
 
 
-def _bound(row: PowerSum, log_radius: float) -> float:
-    powers = np.exp(np.minimum(row.exponents * log_radius, _LARGEST))
-    return float(np.sum(np.abs(row.coefficients) * powers))
+def _bounds(coefficients: Array, exponents: Array, log_radius: float) -> Array:
+    """Return the most that sums of powers (n, k) can be on a circle."""
+    powers = np.exp(np.minimum(exponents * log_radius, _LARGEST))
+    return np.asarray((np.abs(coefficients) * powers).sum(axis=1))
 
 
 def _radius(matrix: Array) -> float:

@@ -298,14 +298,23 @@ class Chart:
         Returns
         -------
         int array (N,)
-            As of `ChartRegion`; -1 exactly on a boundary.
+            As of `ChartRegion`; -1 exactly on a boundary, and in a region of which the search
+            counted differently at the nearest place.
         """
         low, high = np.array(self.spans).T
         unit = np.clip((values - low) / (high - low), _EDGE, 1.0 - _EDGE)
         found = np.full(len(unit), -1, dtype=np.int64)
+        doubtful = np.zeros(len(unit), dtype=bool)
         for region in self.regions:
             outline, *holes = ((loop - low) / (high - low) for loop in region.loops)
-            found[Face(outline, tuple(holes)).contains(unit)] = region.unstable
+            inside = Face(outline, tuple(holes)).contains(unit)
+            found[inside] = region.unstable
+            doubtful |= inside & (region.disagreeing > 0)
+        if np.any(doubtful):
+            nodes = (self.node_values - low) / (high - low)
+            near = [int(np.hypot(*(nodes - place).T).argmin()) for place in unit[doubtful]]
+            same = self.node_counts[near] == found[doubtful]
+            found[doubtful] = np.where(same, found[doubtful], -1)
         return found
 
     def to_dataframe(self) -> pd.DataFrame:

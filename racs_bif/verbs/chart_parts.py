@@ -60,7 +60,8 @@ def troubles_of(found: Search, parts: tuple[Region, ...]) -> tuple[str, ...]:
         )
     wrong = sum(part.disagreeing for part in parts)
     if wrong:
-        troubles.append(f"{wrong} places have another count than the region they are in")
+        other = f", and in {found.torn} another equilibrium than beside them" if found.torn else ""
+        troubles.append(f"{wrong} places have another count than the region they are in{other}")
     return tuple(troubles)
 
 
