@@ -22,6 +22,7 @@ _CONTRACTION = 0.25
 _TOLERANCE = 1e-11
 _SMALL = 1e-7
 SHORTEST = 2.0**-10
+_CAREFUL = 2.0**-7
 _STEPS = 400
 
 
@@ -126,23 +127,26 @@ class Sheet:
 
         return at
 
-    def newton(self, X: Array, P: Array) -> tuple[Array, NDArray[np.bool_]]:
+    def newton(self, X: Array, P: Array) -> tuple[Array, NDArray[np.bool_], Array]:
         """Solve near X (size, N), where Newton's method contracts at once.
 
         Returns
         -------
-        (array (size, N), bool array (N,))
-            Equilibria, and where they were found; elsewhere the numbers mean nothing.
+        (array (size, N), bool array (N,), array (N,))
+            Equilibria, where they were found - elsewhere the numbers mean nothing - and the sign
+            of the Jacobian's determinant there.
         """
         X = np.array(X, dtype=float)
-        found = np.zeros(X.shape[1], dtype=bool)
+        found, parity = np.zeros(X.shape[1], dtype=bool), np.zeros(X.shape[1])
         moving, last = np.arange(X.shape[1]), np.full(X.shape[1], np.inf)
         with np.errstate(all="ignore"):
             held, equations = moving, self.equations(P)
             for _ in range(_ITERATIONS):
                 if len(moving) < len(held):
                     held, equations = moving, self.equations(P[:, moving])
-                step = self._step(*equations(X[:, moving]))
+                value, jacobian = equations(X[:, moving])
+                parity[moving] = np.linalg.slogdet(jacobian)[0]
+                step = self._step(value, jacobian)
                 X[:, moving] -= step
                 scale = 1.0 + np.abs(X[:, moving]).max(axis=0)
                 size = np.abs(step).max(axis=0) / scale
@@ -153,7 +157,7 @@ class Sheet:
                 moving = moving[~good & contracts & np.isfinite(size)]
                 if not len(moving):
                     break
-        return X, found
+        return X, found, parity
 
     def _step(self, value: Array, jacobian: Array) -> Array:
         bad = ~(np.isfinite(value).all(axis=0) & np.isfinite(jacobian).all(axis=(1, 2)))
@@ -174,6 +178,9 @@ class Sheet:
     ) -> tuple[Array, Array]:
         """Continue equilibria along straight lines.
 
+        Where the determinant changes its sign steps are short: Newton's method would leap over a
+        fold to another equilibrium.
+
         Parameters
         ----------
         X : array (size, N)
@@ -190,15 +197,19 @@ class Sheet:
         """
         X = np.array(X, dtype=float)
         reached, step = np.zeros(X.shape[1]), np.ones(X.shape[1])
+        with np.errstate(all="ignore"):
+            parity = np.linalg.slogdet(self.equations(self.plane.vectors(start))(X)[1])[0]
         for _ in range(_STEPS):
             moving = np.flatnonzero((reached < 1.0) & (step >= shortest))
             if not len(moving):
                 break
             goal = np.minimum(reached[moving] + step[moving], 1.0)
             at = (1.0 - goal) * start[:, moving] + goal * end[:, moving]
-            tried, found = self.newton(X[:, moving], self.plane.vectors(at))
+            tried, found, there = self.newton(X[:, moving], self.plane.vectors(at))
+            found &= (there == parity[moving]) | (step[moving] <= _CAREFUL)
             done = moving[found]
             X[:, done], reached[done] = tried[:, found], goal[found]
+            parity[done] = there[found]
             step[done] *= 2.0
             step[moving[~found]] *= 0.5
         return X, reached
