@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from contextlib import contextmanager, suppress
-from functools import partial
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -18,6 +17,7 @@ from racs_bif.cli.following import (
     tell_note,
     wanted,
 )
+from racs_bif.cli.journal import Journal
 from racs_bif.cli.options import (
     add_model_options,
     add_output_options,
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from racs_bif.fractional.system import System
-    from racs_bif.results.branch import Branch
     from racs_bif.results.diagram import Diagram
 
 HELP: Final = "the diagram in one parameter: equilibria, special points, orbits"
@@ -41,11 +40,9 @@ DESCRIPTION: Final = (
     "Follow the equilibria of a model as one parameter goes from LOW to HIGH, locate their special "
     "points, check Hopf points on the exact fractional operator, and follow the periodic orbits "
     "born there. Writes branches.nc, diagram.png, diagram.svg and summary.json; while orbits are "
-    "followed, what is done so far is in unfinished.nc."
+    "followed, what is done so far is in unfinished.nc, and --resume goes on with it."
 )
 FILES: Final = ("branches.nc", "diagram.png", "diagram.svg", "summary.json")
-UNFINISHED: Final = "unfinished.nc"
-"""What is done so far, for a run that is killed."""
 DEFAULT_OUT: Final = "racs_bif_out"
 METHODS: Final = ("shooting", "collocation", "harmonic-balance", "none")
 
@@ -111,6 +108,12 @@ def configure(parser: Parser) -> None:
         metavar="NAME",
         help="what the picture shows on its vertical axis; default what the model suggests",
     )
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on with a run that was interrupted or killed: branches of orbits that it finished "
+        "are taken from DIR",
+    )
     add_output_options(parser)
 
 
@@ -130,7 +133,9 @@ def run(arguments: Namespace) -> int:
 
     done = Run()
     if arguments.orbits != "none":
-        done.keep = partial(_keep, arguments.out / UNFINISHED)
+        done.journal = Journal(arguments.out, arguments, system)
+        if arguments.resume:
+            done.journal.take_up()
     try:
         _compute(arguments, system, done)
     except Exception as error:  # raised again when what is there has been saved
@@ -146,6 +151,8 @@ def run(arguments: Namespace) -> int:
     done.troubles += [f"{b.name}: {b.stopped}" for b in diagram if b.early]
     with _uninterrupted():
         summary = _write(diagram, arguments)
+        if done.journal is not None and not (done.interrupted or done.failure):
+            done.journal.close()
     _tell(diagram, arguments, summary)
     for note in [*done.notes, *more_branches(diagram, arguments)]:
         tell_note(note, arguments)
@@ -157,6 +164,9 @@ def run(arguments: Namespace) -> int:
 
 def _check_names(arguments: Namespace, system: System) -> None:
     """Refuse what would be found out only after computing."""
+    if arguments.resume and arguments.orbits == "none":
+        msg = "--resume goes on with branches of orbits; leave it out beside --orbits none"
+        raise UsageError(msg)
     if arguments.parameter in dict(arguments.values):
         name = arguments.parameter
         msg = f"--set {name} contradicts following {name} from LOW to HIGH; leave it out"
@@ -179,15 +189,17 @@ def _compute(arguments: Namespace, system: System, done: Run) -> None:
     with _interruptible(done), progress(arguments) as task:
         report = task("equilibria", span)
         found = all_equilibria(system, name, span, at=at, probes=arguments.probes, progress=report)
-        done.add(found)
+        with done.step("equilibria"):
+            done.branches.extend(found)
         if arguments.orbits == "none":
             return
+        leads_on = bool(arguments.branches or arguments.cascade)
         for branch in found:
             hopf = [point for point in branch.special if point.label == "H"]
             if branch.connected:
                 for point in hopf:
                     if not done.interrupted:
-                        follow_orbits(point, arguments, done, task)
+                        follow_orbits(point, arguments, done, task, leads_on=leads_on)
             else:
                 done.apart.extend(point.name for point in hopf)
         follow_on(arguments, done, task)
@@ -243,21 +255,7 @@ def _write(diagram: Diagram, arguments: Namespace) -> str:
         save_picture(figure, folder / FILES[1])
         save_picture(figure, folder / FILES[2])
         write_summary(summary, folder / FILES[3])
-    if arguments.orbits != "none":
-        with suppress(OSError):  # it holds nothing that branches.nc has not
-            (arguments.out / UNFINISHED).unlink()
     return to_text(summary)
-
-
-def _keep(path: Path, branches: list[Branch]) -> None:
-    """Put what is done so far on disk; a disk that takes nothing is told of at the end."""
-    from racs_bif.errors import FileError
-    from racs_bif.results.diagram import Diagram
-    from racs_bif.results.files import save
-
-    with suppress(FileError, OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        save(Diagram(*branches), path)
 
 
 def _tell(diagram: Diagram, arguments: Namespace, summary: str) -> None:
@@ -297,7 +295,8 @@ def _close(done: Run, arguments: Namespace) -> int:
     from racs_bif.cli.terminal import warn
 
     if done.interrupted:
-        done.troubles.insert(0, "interrupted by the user")
+        goes_on = "" if done.journal is None else "; the same command with --resume goes on"
+        done.troubles.insert(0, f"interrupted by the user{goes_on}")
     if not done.troubles:
         return 0
     warn(f"ended early, saved what there is in {arguments.out}: {' | '.join(done.troubles)}")

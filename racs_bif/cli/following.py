@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from racs_bif.cli.journal import Step
 from racs_bif.cli.parser import assignment, number
 from racs_bif.errors import RacsBifError
 
 if TYPE_CHECKING:
     from argparse import Namespace
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterator
 
+    from racs_bif.cli.journal import Journal
     from racs_bif.cli.terminal import Task
+    from racs_bif.continuation.points import Point
     from racs_bif.results.branch import Branch
     from racs_bif.results.cascade import Cascade
     from racs_bif.results.diagram import Diagram
@@ -26,7 +30,7 @@ STUB: Final = 8
 
 @dataclass
 class Run:
-    """What was computed, and what went wrong on the way; `keep` is given every branch done."""
+    """What was computed, and what went wrong on the way; the journal keeps every step done."""
 
     branches: list[Branch] = field(default_factory=list)
     troubles: list[str] = field(default_factory=list)
@@ -34,13 +38,35 @@ class Run:
     notes: list[str] = field(default_factory=list)
     interrupted: bool = False
     failure: Exception | None = None
-    keep: Callable[[list[Branch]], None] | None = None
+    journal: Journal | None = None
 
-    def add(self, branches: Iterable[Branch]) -> None:
-        """Take branches that are done, and have them kept."""
-        self.branches.extend(branches)
-        if self.keep is not None:
-            self.keep(self.branches)
+    @contextmanager
+    def step(self, name: str) -> Iterator[None]:
+        """Do a step and, if it comes to its end, have it kept with what it adds."""
+        branches, troubles, notes = len(self.branches), len(self.troubles), len(self.notes)
+        yield
+        if self.journal is not None and not self.interrupted:
+            told = tuple(self.troubles[troubles:]), tuple(self.notes[notes:])
+            self.journal.keep(Step(name, len(self.branches) - branches, *told), self.branches)
+
+    def take(self, name: str, *, leads_on: bool) -> bool:
+        """Take a step from the run that this one goes on with, if it was finished there.
+
+        What branches begin at is not on disk: a step that others start from (`leads_on`), at a
+        point of its branches, is done again.
+        """
+        found = None if self.journal is None else self.journal.earlier(name)
+        if found is None:
+            return False
+        step, branches = found
+        points = (point.label for branch in branches for point in branch.special)
+        if leads_on and not SWITCHED.isdisjoint(points):
+            return False
+        with self.step(name):
+            self.branches.extend(branches)
+            self.troubles.extend(step.troubles)
+            self.notes.extend(step.notes)
+        return True
 
 
 def follow_on(arguments: Namespace, done: Run, task: Task) -> None:
@@ -57,7 +83,8 @@ def follow_on(arguments: Namespace, done: Run, task: Task) -> None:
             for point in branch.special:
                 left = point.label in SWITCHED and not (level and point.index == 0)
                 if left and not done.interrupted:
-                    follow_orbits(point, arguments, done, task)
+                    leads_on = level + 1 < arguments.branches or bool(arguments.cascade)
+                    follow_orbits(point, arguments, done, task, leads_on=leads_on)
         born = range(born.start, len(done.branches))
     if arguments.cascade:
         _follow_cascades(arguments, done, task)
@@ -73,14 +100,19 @@ def _follow_cascades(arguments: Namespace, done: Run, task: Task) -> None:
         first = next((point for point in branch.special if point.label == "PD"), None)
         if branch.kind != "orbit" or first is None or done.interrupted:
             continue
-        try:
-            report = task(f"cascade from {first.name}", span)
-            found = period_doubling_cascade(first, arguments.cascade, span=span, progress=report)
-        except RacsBifError as error:
-            done.troubles.append(f"no cascade from {first.name}: {error}")
+        name = f"cascade from {first.name}"
+        if done.take(name, leads_on=False):
             continue
-        done.add(found.branches)
-        done.notes.append(f"Cascade from {first.name} of {branch.name}:\n{cascade_text(found)}")
+        with done.step(name):
+            try:
+                found = period_doubling_cascade(
+                    first, arguments.cascade, span=span, progress=task(name, span)
+                )
+            except RacsBifError as error:
+                done.troubles.append(f"no {name}: {error}")
+                continue
+            done.branches.extend(found.branches)
+            done.notes.append(f"Cascade from {first.name} of {branch.name}:\n{cascade_text(found)}")
 
 
 def cascade_text(cascade: Cascade) -> str:
@@ -98,8 +130,21 @@ def cascade_text(cascade: Cascade) -> str:
     return "\n".join([*lines, f"  {cascade.stopped}"])
 
 
-def follow_orbits(point: SpecialPoint, arguments: Namespace, done: Run, task: Task) -> None:
-    """Follow the orbits that leave a point; note where they are those of a known branch."""
+def follow_orbits(
+    point: SpecialPoint, arguments: Namespace, done: Run, task: Task, *, leads_on: bool
+) -> None:
+    """Follow the orbits that leave a point, unless an earlier run did; `leads_on` as in `take`."""
+    name = f"orbits from {point.name}"
+    if done.take(name, leads_on=leads_on):
+        return
+    with done.step(name):
+        _follow_orbits(point, arguments, done, task(name, (arguments.low, arguments.high)))
+
+
+def _follow_orbits(
+    point: SpecialPoint, arguments: Namespace, done: Run, report: Callable[[Point], None] | None
+) -> None:
+    """Note instead where they are those of a known branch."""
     from racs_bif.results.diagram import Diagram
     from racs_bif.verbs.orbits import continue_orbits
 
@@ -108,7 +153,6 @@ def follow_orbits(point: SpecialPoint, arguments: Namespace, done: Run, task: Ta
     at = tuple(named.get(arguments.parameter, ())) if set(named) <= {arguments.parameter} else named
     known = Diagram(*done.branches).branches
     try:
-        report = task(f"orbits from {point.name}", span)
         method = arguments.orbits if point.label == "H" else None
         branch = continue_orbits(point, span, method=method, at=at, known=known, progress=report)
     except RacsBifError as error:
@@ -118,7 +162,7 @@ def follow_orbits(point: SpecialPoint, arguments: Namespace, done: Run, task: Ta
     if met is not None and len(branch) <= STUB:
         done.notes.append(f"The orbits from {point.name} are those of {met}.")
         return
-    done.add([branch])
+    done.branches.append(branch)
 
 
 def targets(arguments: Namespace) -> dict[str, list[float]]:

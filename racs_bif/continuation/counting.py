@@ -9,7 +9,7 @@ import numpy as np
 from racs_bif.numerics.eigen import match
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from racs_bif.continuation.points import Point
     from racs_bif.continuation.problem import Problem
@@ -51,6 +51,35 @@ def unexplained(problem: Problem, a: Point, b: Point, crossings: Iterable[int]) 
     if crossed > sum(counts):
         return f"{crossed} eigenvalues cross, some each way"
     return ""
+
+
+def hides_others(problem: Problem, a: Point, b: Point, events: Sequence[tuple[Point, int]]) -> bool:
+    """Say whether the spectra at events show that there are more of them between two points.
+
+    Between events, and at the ends, there are as many unstable eigenvalues as at the event beside,
+    the ones on the axis left out or all of them counted.
+
+    Parameters
+    ----------
+    problem : Problem
+        Knows the sides.
+    a, b : Point
+        Two points, one after another.
+    events : sequence of (Point, int)
+        What was found between them, in order, and how many eigenvalues change side there.
+    """
+    possible = {a.unstable}
+    for point, count in events:
+        if not count:
+            continue
+        rest = problem.unstable_beside(point.spectrum, count)
+        if rest is None:
+            return False
+        around = {rest, rest + count}
+        if not possible & around:
+            return True
+        possible = around
+    return b.unstable not in possible
 
 
 def _crossed(problem: Problem, a: Point, b: Point) -> int:

@@ -106,6 +106,14 @@ class Problem(ABC):
         others = (self.unstable(np.delete(spectrum, i)) for i in range(len(spectrum)))
         return np.fromiter((other < count for other in others), dtype=bool, count=len(spectrum))
 
+    def unstable_beside(self, spectrum: Spectrum, count: int) -> int | None:
+        """Return how many eigenvalues are unstable at an event besides the `count` on the axis.
+
+        By default None: that is not known.
+        """
+        del spectrum, count
+        return None
+
     def measures(self, z: Array) -> dict[str, float]:
         """Return what is plotted, by default nothing."""
         del z

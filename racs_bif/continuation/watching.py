@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from racs_bif.continuation.building import FAILURES, Builder
-from racs_bif.continuation.counting import unexplained
+from racs_bif.continuation.counting import hides_others, unexplained
 from racs_bif.continuation.locating import Event, Locator, apart, at_zero, lowest_between
 from racs_bif.continuation.points import Point, SpecialPoint
 from racs_bif.continuation.stopped import Stopped
@@ -310,7 +310,8 @@ class Watch:
         if unchecked or (at_start and self._critical_start()):
             return nodes
         reason = unexplained(self._problem, a, b, [event.crossings for event in events])
-        if not reason:
+        found = [(event.point, event.crossings) for event in events]
+        if not (reason or hides_others(self._problem, a, b, found)):
             return nodes
         middle = self._middle(segment or self._locator.segment(a, b))
         if middle is not None:
@@ -319,7 +320,7 @@ class Watch:
             left = self._resolve(a, middle, before, values)
             return [*left, (middle, None), *self._resolve(middle, b, values, after)]
         # At the start itself an eigenvalue may be on the axis, within the floor.
-        if not at_start:
+        if reason and not at_start:
             self._mismatches += 1
             self._notes.append(
                 f"unexplained between {self._problem.parameter} = {a.parameter:.10g} and "

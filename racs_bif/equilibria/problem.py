@@ -96,6 +96,12 @@ class EquilibriumProblem(Problem):
         """Return which eigenvalues are right of the imaginary axis."""
         return np.asarray(spectrum.real > 0.0)
 
+    def unstable_beside(self, spectrum: Spectrum, count: int) -> int | None:
+        """Return how many are right of the imaginary axis but for those nearest to it."""
+        if len(spectrum) < count:
+            return None
+        return int(np.count_nonzero(spectrum.real[np.argsort(np.abs(spectrum.real))[count:]] > 0.0))
+
     def measures(self, z: Array) -> dict[str, float]:
         """Return further quantities of the point."""
         if self._measures is None:

@@ -1,19 +1,23 @@
 """Whether the band of a realisation holds what decides stability, and a wider one where not.
 
 A realisation is good on its band; roots slower or faster than that are its own. The argument
-principle counts the exact unstable roots in the middle between any two special points. Where the
+principle counts the exact unstable roots between special points, and right beside folds. Where the
 realisation has other numbers there, or a Hopf point beyond its band, branches are followed again on
 a wider one, unless the user chose the band.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final, TypeVar
 
+import numpy as np
+
 from racs_bif.errors import ConvergenceError, ParameterError
 from racs_bif.fractional.argument import count_unstable
+from racs_bif.fractional.certificates import Place, beside
 from racs_bif.fractional.realisations import choose_realisation
 from racs_bif.units import after, frequency_unit
 from racs_bif.verbs.assemble import interrupted
@@ -21,7 +25,7 @@ from racs_bif.verbs.assemble import interrupted
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from racs_bif.continuation.points import Point, Trace
+    from racs_bif.continuation.points import Point, Spectrum, Trace
     from racs_bif.equilibria.problem import EquilibriumProblem
     from racs_bif.fractional.system import System
 
@@ -36,6 +40,7 @@ _LIMITS: Final = (1e-7, 1e6)
 """Beyond these multiples of the model's own band none is tried."""
 _BESIDE: Final = 1e-3
 """Length of the branch, whose whole span counts 1, that is too near a special point to check."""
+_STATIC: Final = ("LP", "BP")
 _MARGIN: Final = 2.0
 """How far within its band a realisation is good, as a factor."""
 
@@ -115,16 +120,45 @@ def _contradicted(
     system: System, problem: EquilibriumProblem, found: Trace
 ) -> tuple[Band, str] | None:
     low, high = system.settings.band
-    for point in _checked(found):
-        exact = _exact_count(system, problem, point)
-        if exact is not None and exact != point.unstable:
-            told = f"at {problem.parameter} = {point.parameter:.6g} there are {exact} exact"
-            return (low / _FURTHER, high), f"{told} unstable roots, not {point.unstable}"
+    for place, unstable in _places(system, problem, found):
+        exact = _exact_count(system, problem, place)
+        if exact is not None and exact != unstable:
+            told = f"at {problem.parameter} = {place.value:.6g} there are {exact} exact"
+            return (low / _FURTHER, high), f"{told} unstable roots, not {unstable}"
     return None
 
 
+def _places(
+    system: System, problem: EquilibriumProblem, found: Trace
+) -> Iterator[tuple[Place, int]]:
+    """Yield places where roots are counted, and the numbers of unstable eigenvalues there.
+
+    They are points of the branch and, as near as `certify` counts, places right beside folds and
+    branch points: roots there may be slower than the band.
+    """
+
+    def place(point: Point) -> Place:
+        X = system.exact_point(point.z[:-1], problem.path.vector(point.parameter))
+        return Place(X=X, value=point.parameter)
+
+    for point in _checked(found):
+        yield place(point), point.unstable
+    special = {point.index for point in found.special}
+    for k in (point.index for point in found.special if point.label in _STATIC):
+        for j in (k - 1, k + 1):
+            if 0 <= k < len(found.points) and 0 <= j < len(found.points) and j not in special:
+                ends = place(found.points[k]), place(found.points[j])
+                with suppress(ConvergenceError):
+                    beyond = beside(system.exact, problem.path, *ends)
+                    yield beyond, found.points[j].unstable
+
+
 def _checked(found: Trace) -> Iterator[Point]:
-    """Yield the first, middle and last point between any two special points, apart from these."""
+    """Yield some points between any two special points, apart from these.
+
+    They are the first, the middle and the last one, the one at which a pair comes nearest to the
+    imaginary axis for its frequency, and the one with the slowest eigenvalue.
+    """
     places = sorted({0, *(point.index for point in found.special), len(found.points) - 1})
     for a, b in pairwise(places):
         start, end = found.points[a].arclength, found.points[b].arclength
@@ -133,13 +167,22 @@ def _checked(found: Trace) -> Iterator[Point]:
             for point in found.points[a : b + 1]
             if min(abs(point.arclength - start), abs(point.arclength - end)) > _BESIDE
         ]
-        yield from (piece[k] for k in sorted({0, len(piece) // 2, len(piece) - 1} if piece else ()))
+        if piece:
+            pair = int(np.argmin([_nearest_pair(point.spectrum) for point in piece]))
+            slow = int(np.argmin([np.abs(point.spectrum).min(initial=np.inf) for point in piece]))
+            yield from (piece[k] for k in sorted({0, len(piece) // 2, len(piece) - 1, pair, slow}))
 
 
-def _exact_count(system: System, problem: EquilibriumProblem, point: Point) -> int | None:
-    p = problem.path.vector(point.parameter)
+def _nearest_pair(spectrum: Spectrum) -> float:
+    """Return the least |Re| / |Im| of a pair, infinite where there is none."""
+    pairs = spectrum[spectrum.imag > 0.0]
+    return float((np.abs(pairs.real) / pairs.imag).min(initial=np.inf))
+
+
+def _exact_count(system: System, problem: EquilibriumProblem, place: Place) -> int | None:
+    p = problem.path.vector(place.value)
     try:
-        X = system.exact.equilibrium(system.exact_point(point.z[:-1], p), p)
+        X = system.exact.equilibrium(place.X, p)
         return count_unstable(system.exact, X, p).unstable
     except (ConvergenceError, ArithmeticError):
         return None

@@ -15,7 +15,8 @@ from pathlib import Path
 import pytest
 
 import racs_bif as rb
-from racs_bif.cli.continue_ import FILES, UNFINISHED
+from racs_bif.cli.continue_ import FILES
+from racs_bif.cli.journal import UNFINISHED
 
 ROOT = Path(__file__).parents[2]
 BRUSSELATOR = (
@@ -83,11 +84,11 @@ def test_a_run_leaves_its_files_only(uninterrupted):
 def test_continue_killed_while_orbits_are_followed_leaves_the_equilibria(uninterrupted, tmp_path):
     out, whole = tmp_path / "out", rb.load(uninterrupted[0] / "branches.nc")
     with started(*BRUSSELATOR, "--out", out) as running:
-        _wait_for(running, out / UNFINISHED)
+        _wait_for(running, out / UNFINISHED[1])
         running.send_signal(signal.SIGKILL)
         running.wait()
-    assert _whole(out) == [UNFINISHED]
-    kept = rb.load(out / UNFINISHED)
+    assert _whole(out) == sorted(UNFINISHED)
+    kept = rb.load(out / UNFINISHED[0])
     assert kept.branches == whole.branches[:1]
 
     with started(*BRUSSELATOR, "--out", out) as running:  # the same again ends as if never killed
@@ -100,13 +101,13 @@ def test_continue_killed_while_orbits_are_followed_leaves_the_equilibria(uninter
 def test_continue_interrupted_while_orbits_are_followed_saves_all_it_has(uninterrupted, tmp_path):
     out, whole = tmp_path / "out", rb.load(uninterrupted[0] / "branches.nc")
     with started(*BRUSSELATOR, "--out", out) as running:
-        _wait_for(running, out / UNFINISHED)
+        _wait_for(running, out / UNFINISHED[1])
         running.send_signal(signal.SIGINT)
         _, told = running.communicate()
     assert running.returncode == 1
     assert told.count("\n") == 1
-    assert "interrupted by the user" in told
-    assert _whole(out) == sorted(FILES)
+    assert "interrupted by the user; the same command with --resume goes on" in told
+    assert _whole(out) == sorted((*FILES, *UNFINISHED))
     assert rb.load(out / "branches.nc").branches[0] == whole.branches[0]
 
 
@@ -120,7 +121,7 @@ def test_continue_stopped_at_any_moment_leaves_whole_files(uninterrupted, tmp_pa
         _, told = running.communicate()
     assert running.returncode in {0, STATUS[number], -number}
     assert "Traceback" not in told or not out.exists()  # Python itself was still being started
-    assert set(_whole(out)) <= {*FILES, UNFINISHED}
+    assert set(_whole(out)) <= {*FILES, *UNFINISHED}
 
 
 @pytest.mark.parametrize("number", STATUS, ids=lambda number: number.name)
