@@ -58,6 +58,11 @@ class CollocatedProblem(OrbitProblem):
         """Return the orbit as a function of time."""
         return self.at(z).curve
 
+    def unknown_times(self, z: Array) -> int:
+        """Return the number of nodes in time."""
+        N, m, _ = self.nodes(z).shape
+        return int(N * m)
+
     def at(self, z: Array) -> Collocated:
         """Return the equations at `z`, kept until they are asked for elsewhere."""
         if self._found is None or not np.array_equal(self._found[0], z):

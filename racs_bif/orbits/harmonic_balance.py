@@ -118,6 +118,10 @@ class HarmonicBalanceProblem(OrbitProblem):
         """Return the number of harmonics."""
         return harmonics_of(self.series(z))
 
+    def unknown_times(self, z: Array) -> int:
+        """Return how many coefficients a state has."""
+        return 2 * self.harmonics(z) + 1
+
     def tail(self, z: Array) -> float:
         """Return the largest of the last harmonics, relative to the orbit: its error."""
         return float(tails(self.series(z)).max())

@@ -131,6 +131,11 @@ class OrbitProblem(Problem):
         solution = np.linalg.solve(matrix, right)
         return float(sign * np.linalg.norm(right) / np.linalg.norm(solution))
 
+    def unknown_times(self, z: Array) -> int:
+        """Return at how many times over a period the method knows the orbit; 0 where at all."""
+        del z
+        return 0
+
     def orbit(self, z: Array, samples: int = 201) -> Orbit:
         """Return the orbit as a result, sampled at equal times over one period."""
         found = self.floquet(z)

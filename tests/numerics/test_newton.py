@@ -122,3 +122,46 @@ def test_damping_widens_convergence():
 def test_damping_gives_up_where_there_is_no_solution():
     with pytest.raises(ConvergenceError):
         damped_newton(Circle(), np.array([1.5, 0.7]), ROW, WEIGHTS, tolerance=1e-10, iterations=50)
+
+
+class Steep(Circle):
+    def residual(self, z):
+        return np.array([1e150])
+
+    def jacobian(self, z):
+        return np.array([[0.0, 1e-200]])
+
+
+def test_a_correction_that_is_not_finite_is_refused():
+    start = np.array([0.6, 1.1])
+    with pytest.raises(ConvergenceError, match="Newton's correction is not finite"):
+        newton(Steep(), start, ROW, WEIGHTS, tolerance=1e-10, iterations=9)
+
+
+def test_too_few_iterations_with_damping():
+    with pytest.raises(ConvergenceError, match="did not converge in 1 iterations"):
+        damped_newton(Circle(), np.array([0.6, 1.1]), ROW, WEIGHTS, tolerance=1e-10, iterations=1)
+
+
+class Logarithm(Circle):
+    """A function that is defined on the right only."""
+
+    def __init__(self):
+        super().__init__()
+        self.refused = 0
+
+    def residual(self, z):
+        if z[1] <= 0.0:
+            self.refused += 1
+            raise ZeroDivisionError
+        return np.log(z[1:])
+
+    def jacobian(self, z):
+        return np.array([[0.0, 1.0 / z[1]]])
+
+
+def test_corrections_that_leave_the_domain_are_shortened():
+    logarithm, start = Logarithm(), np.array([0.6, 30.0])
+    solved = damped_newton(logarithm, start, ROW, WEIGHTS, tolerance=1e-10, iterations=50)
+    assert solved.z == pytest.approx([0.6, 1.0], abs=1e-12)
+    assert logarithm.refused > 0

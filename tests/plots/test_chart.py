@@ -231,3 +231,30 @@ def test_curves_of_other_points_are_drawn_and_named(chart):
     assert drawn["fold of cycles (LPC)"].get_xdata().tolist() == [-0.5, 0.0, 0.4]
     legend = {text.get_text() for text in ax.get_legend().get_texts()}
     assert {"fold of cycles (LPC)", "HC1", "subcritical"} <= legend
+
+
+def stars(ax):
+    return [line for line in ax.get_lines() if line.get_marker() == "*"]
+
+
+def test_a_chart_beside_the_models_own_values_has_no_star(fold):
+    import matplotlib.pyplot as plt
+
+    ax = draw(fold)
+    assert len(stars(ax)) == 1
+    away = replace(fold, system=replace(fold.system, parameters={"a": 9.0, "b": 0.5}))
+    beside = draw(away)
+    assert beside is not ax
+    assert not stars(beside)
+    assert "nominal" not in texts(beside)
+    assert "stable" in texts(beside)
+    plt.close("all")
+
+
+def test_slices_without_frequencies_have_a_legend_and_no_bar(fold):
+    folds = tuple(b for b in fold.boundaries if b.kind == "fold")
+    slices = rb.ChartSlices(parameter="b", charts=(replace(fold, boundaries=folds),))
+    figure = picture_slices(slices)
+    assert len(figure.axes) == 1
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["fold: the equilibrium ends"]

@@ -117,3 +117,24 @@ def test_results_cannot_be_changed_by_assignment(branch):
         branch.name = "EQ2"
     assert isinstance(branch, Branch)
     assert "EQ1: 29 points, u 5 to 30, special points: H1, UZ1" in repr(branch)
+
+
+def test_rows_are_not_special_points(branch):
+    with pytest.raises(UsageError, match=r"by its name, not by 3; take \.values\[3\] or \.column"):
+        branch[3]
+
+
+def test_results_of_different_kinds_are_not_the_same(branch, orbit_branch):
+    profile = orbit_branch.profiles["NS1"]
+    assert profile == replace(profile, times=profile.times.copy())
+    assert profile != replace(profile, times=2.0 * profile.times)
+    assert profile != "NS1"
+    assert branch != orbit_branch["NS1"]
+    exact = replace(branch["H1"], exact=None)
+    assert exact != branch["H1"]
+
+
+def test_a_list_in_the_data_of_a_special_point_is_an_array(branch):
+    point = replace(branch["H1"], data={"residues": [1.0, 2.0], "omegas": (1, 2, 3)})
+    assert isinstance(point.data["residues"], np.ndarray)
+    np.testing.assert_array_equal(point.data["omegas"], [1, 2, 3])

@@ -42,3 +42,8 @@ def test_comparison(diagram, branch):
     assert diagram != Diagram(replace(branch, stopped="elsewhere"), diagram.branches[1])
     assert len(diagram) == 2
     assert repr(diagram).count("\n") == 1
+
+
+def test_a_diagram_is_no_list_of_its_branches(diagram):
+    assert diagram != list(diagram.branches)
+    assert diagram == Diagram(*diagram.branches)

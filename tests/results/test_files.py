@@ -155,3 +155,25 @@ def test_a_failing_disk_leaves_the_old_file(branch, tmp_path, monkeypatch):
 def test_saving_into_no_folder_says_so(branch, tmp_path):
     with pytest.raises(FileError, match="no such file or directory"):
         save(branch, tmp_path / "nowhere" / "eq.nc")
+
+
+def test_arrays_of_every_kind_come_back_with_their_type(branch, tmp_path):
+    data = {
+        "whole": np.array([1, 2, 3], dtype=np.int32),
+        "real": np.array([[1.5, np.nan]]),
+        "flags": np.array([True, False]),
+        "single": np.array([1.0], dtype=np.float32),
+    }
+    special = (replace(branch.special[0], data=data), *branch.special[1:])
+    back = load(save(replace(branch, special=special), tmp_path / "kinds.nc"))
+    for name, array in data.items():
+        found = back["H1"].data[name]
+        assert found.dtype == array.dtype
+        np.testing.assert_array_equal(found, array)
+
+
+def test_an_array_of_words_is_refused_by_name(branch, tmp_path):
+    special = (replace(branch.special[0], data={"words": np.array(["a", "b"])}), *branch.special[1:])
+    with pytest.raises(TypeError, match="H1: 'words' holds <U1, a file takes numbers and words"):
+        save(replace(branch, special=special), tmp_path / "words.nc")
+    assert not (tmp_path / "words.nc").exists()

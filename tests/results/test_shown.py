@@ -1,13 +1,17 @@
 """What a notebook shows of results: the numbers and units that they hold."""
 
 import re
+import runpy
+from dataclasses import replace
 from html import unescape
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import racs_bif as rb
+from racs_bif.results.chart_map import ChartMap, SweepMap
 from racs_bif.results.special import SpecialPoint
 
 
@@ -200,3 +204,63 @@ def test_pictures_of_results_are_drawn_on_axes_that_are_given(model, equilibria)
     assert rb.spectrum(model).plot(ax=ax) is ax
     assert equilibria.plot("y").get_ylabel() == "$y$"
     plt.close("all")
+
+
+def known(name):
+    path = Path(__file__).with_name("conftest.py")
+    return runpy.run_path(str(path))[name]()
+
+
+def test_a_realised_variant_is_told():
+    text = shown(known("equilibria"))
+    assert "Hopf's normal form, déplacé, variant paper" in text
+    assert "realised by oustaloup with 1 states (error 0.01)" in text
+
+
+def test_a_special_point_that_does_not_know_its_system_has_no_units():
+    branch = known("equilibria")
+    text = shown(branch["H1"])
+    assert re.search(r"\bu 10 10\.001\b", text)
+    assert "[m/s]" not in text
+    assert "eigenvector 1+0j, -0-1j, nan+nanj" in text or "eigenvector 1+0j" in text
+    large = replace(branch["H1"], data={"wave": np.zeros(400), "flags": np.array([True])})
+    assert "wave array (400,)" in shown(large)
+    assert "flags array (1,)" in shown(large)
+
+
+def test_a_curve_has_no_count_of_unstable_roots():
+    branch = known("equilibria")
+    assert "unstable" in shown(branch)
+    values = np.column_stack([branch.parameter, branch.parameter])
+    curve = replace(branch, kind="curve", parameters=("u", "m"), values=values)
+    assert "unstable" not in shown(curve)
+    assert "greatest" in shown(curve)
+
+
+def test_a_branch_without_a_spectrum_as_a_data_set():
+    branch = known("orbits")
+    data = replace(branch, spectrum=np.empty((len(branch), 0), dtype=complex)).to_xarray()
+    assert "spectrum" not in data
+    assert np.array_equal(data["period"], branch.measures["period"])
+
+
+def test_a_map_of_simulations_as_a_data_set(chart):
+    value = np.array([[0.0, 0.5], [np.nan, 0.25]])
+    status = np.array([[0, 0], [1, 0]], dtype=np.int8)
+    sweep = SweepMap(
+        value=value, error=0.1 * value, status=status, watch="x", duration=10.0, tolerance=1e-5
+    )
+    nothing = np.full((2, 2), np.nan)
+    made = ChartMap(
+        quantity="amplitude",
+        unstable=np.zeros((2, 2), dtype=np.int8),
+        sigma=nothing,
+        omega=nothing,
+        evaluations=1,
+        sweep=sweep,
+    )
+    data = replace(chart, map=made).to_xarray()
+    np.testing.assert_array_equal(data["amplitude"], value)
+    np.testing.assert_array_equal(data["error"], 0.1 * value)
+    np.testing.assert_array_equal(data["status"], status)
+    assert "sigma" not in data
