@@ -32,6 +32,8 @@ import racs_bif as rb
 from racs_bif.charts.settings import ChartSettings
 from racs_bif.errors import ConvergenceError, RacsBifError
 from racs_bif.fractional.argument import count_unstable
+from racs_bif.fractional.characteristic import Characteristic
+from racs_bif.fractional.polish import polish
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -52,8 +54,8 @@ STARTS: Final = 100
 LIKELY_STATE: Final = (10.0, 2.0, 0.5, 0.1)
 """Deviations of the random states (v, w, delta_c and its rate) that equilibria are looked for from,
 and how many of them."""
-ON_AXIS: Final = 1e-5
-"""By how much the frequency of a root on the imaginary axis may differ from a Hopf curve's."""
+ON_AXIS: Final = 1e-6
+"""By how much, relative, an exact root may differ from i omega of a Hopf curve."""
 PLACES: Final = 4
 """Places of a chart at which roots are counted again."""
 _UNEXPECTED: Final = "UNEXPECTED"
@@ -186,12 +188,14 @@ def _certify(branch: Branch) -> tuple[Certificate, str, str]:
     certificate = rb.certify(branch, "complete")
     if certificate.holds:
         return certificate, "ok", ""
+    if "No wider band" in branch.stopped:
+        return certificate, "early", "no band settles it"
     findings = "; ".join(f"{check.subject}: {check.finding}" for check in certificate.failures)
     return certificate, _UNEXPECTED, findings
 
 
 def _curve(system: System, hopf: SpecialPoint) -> tuple[Branch, str, str]:
-    """Follow the exact Hopf point in speed and stiffness and count again at some of the points."""
+    """Follow the exact Hopf point in speed and stiffness; some exact roots are solved for again."""
     stiffness = system.parameters["C_s"]
     spans = {"u": SPEEDS, "C_s": (0.5 * stiffness, 2.0 * stiffness)}
     curve = rb.continue_curve(hopf, ("u", "C_s"), spans, operator="exact")
@@ -200,9 +204,10 @@ def _curve(system: System, hopf: SpecialPoint) -> tuple[Branch, str, str]:
         at, omega = system.with_parameters(place), float(curve.measures["omega"][k])
         guess = np.zeros(system.exact.size)
         guess[: len(system.states)] = curve.states[k, : len(system.states)]
-        found = count_unstable(at.exact, at.exact.equilibrium(guess, at.values), at.values)
-        crosses = any(abs(root.imag - omega) < ON_AXIS * omega for root in found.on_line)
-        if not curve.measures["neutral"][k] and not crosses:
+        X = at.exact.equilibrium(guess, at.values)
+        ch = Characteristic.of_model(at.exact, X, at.values)
+        root = np.exp(polish(ch, np.log(np.array([1j * omega])))[0])[0]
+        if not (curve.measures["neutral"][k] or abs(root - 1j * omega) < ON_AXIS * omega):
             where = ", ".join(f"{name} = {value:.6g}" for name, value in place.items())
             return curve, _UNEXPECTED, f"no exact root at i {omega:.6g} at {where}"
     return curve, "early" if curve.early else "ok", curve.stopped
@@ -328,7 +333,9 @@ def read(path: Path) -> list[dict[str, Any]]:
 
 
 def _bad(row: dict[str, Any]) -> bool:
-    return any(outcome in {_UNEXPECTED, "too long"} for outcome, _ in row["parts"].values())
+    return any(
+        outcome in {_UNEXPECTED, "error", "too long"} for outcome, _ in row["parts"].values()
+    )
 
 
 def main() -> None:
@@ -342,7 +349,9 @@ def main() -> None:
         "--part", type=int, nargs=2, default=(0, 1), metavar=("K", "OF"), help="every OF-th, from K"
     )
     parser.add_argument(
-        "--again", action="store_true", help="examine again what was UNEXPECTED or took too long"
+        "--again",
+        action="store_true",
+        help="examine again what went wrong or took too long",
     )
     parser.add_argument("--only", type=int, help="examine this vehicle alone")
     options = parser.parse_args()

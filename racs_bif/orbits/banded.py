@@ -9,6 +9,7 @@ entries in the columns of this one are zero.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -121,12 +122,31 @@ class BandedStages(Stages):
             raise np.linalg.LinAlgError("the equations of an interval are singular")
         self._factors = lu, pivots
 
+    @cached_property
+    def _by_starts(self) -> Array:
+        """Derivatives (n, N, n, m) of the Gauss points by the starts, each in the band's order."""
+        size = self._size
+        starts = np.zeros((size, self._count, size, self._gauss.degree))
+        starts[range(size), :, range(size)] = self._gauss.row_sums
+        return self._banded(starts, transposed=0)
+
     def transitions(self) -> Array:
         """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
-        g, size = self._gauss, self._size
-        starts = np.multiply.outer(np.eye(size), g.row_sums).swapaxes(1, 2)[:, None]
-        moved = self.at_ends(np.broadcast_to(starts, (size, self._count, g.degree, size)))
-        return np.asarray(moved.transpose(1, 2, 0) + g.end_start * np.eye(size))
+        g, back = self._gauss, self._back
+        moved = (self._by_starts @ g.end).transpose(1, 2, 0)
+        return np.asarray(moved[:, back[:, None], back] + g.end_start * np.eye(self._size))
+
+    def from_starts(self, starts: Array) -> Array:
+        """Return B^-1 A^-1 1 x (c, N, m, n) for x = starts (c, N, n)."""
+        there = starts[:, :, self._order].transpose(1, 0, 2)
+        moved = there @ self._spread
+        moved = moved.reshape(*there.shape, self._gauss.degree).transpose(1, 0, 3, 2)
+        return np.ascontiguousarray(moved[..., self._back])
+
+    @cached_property
+    def _spread(self) -> Array:
+        """As `_by_starts`, (N, n, n m)."""
+        return self._by_starts.swapaxes(0, 1).reshape(self._count, self._size, -1)
 
     def at_ends(self, rhs: Array) -> Array:
         """Return what B^-1 rhs adds at the ends of the intervals (c, N, n)."""
@@ -141,9 +161,15 @@ class BandedStages(Stages):
         return self._apply(rhs, transposed=1)
 
     def _apply(self, rhs: Array, *, transposed: int) -> Array:
-        lu, pivots = self._factors
         there = np.ascontiguousarray(rhs[..., self._order].swapaxes(2, 3))
-        columns = there.reshape(len(there), -1).T
-        found = self._solver(lu, self._below, self._above, columns, pivots, trans=transposed)[0]
-        values = found.T.reshape(there.shape)[:, :, self._back]
+        values = self._banded(there, transposed=transposed)[:, :, self._back]
         return np.ascontiguousarray(values.swapaxes(2, 3))
+
+    def _banded(self, there: Array, *, transposed: int) -> Array:
+        """Return B^-1 times right-hand sides (c, N, n, m) in the band's order, written over."""
+        lu, pivots = self._factors
+        columns = there.reshape(len(there), -1).T
+        found = self._solver(
+            lu, self._below, self._above, columns, pivots, trans=transposed, overwrite_b=True
+        )[0]
+        return np.asarray(found.T.reshape(there.shape))

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
 
+_SOLVED = 10.0
+"""Error, in tolerances, up to which an orbit's polynomials are near enough on another mesh."""
+
 
 class CollocationProblem(CollocatedProblem):
     """Periodic orbits x' = f(x, p) as piecewise polynomials, collocated at Gauss points.
@@ -222,7 +225,8 @@ class CollocationProblem(CollocatedProblem):
         if mesh is not None:
             # if that fails the old mesh serves, until it no longer does and the branch ends
             with suppress(ConvergenceError, np.linalg.LinAlgError):
-                z, tangent = self.on_mesh(z, mesh, tangent)
+                near = float(curve.errors(scales).max()) <= _SOLVED * self.settings.tolerance
+                z, tangent = (self._moved if near else self.on_mesh)(z, mesh, tangent)
         followed = np.array(z)
         followed[-2] = self.history.add(self.curve(z), self._scales_of(z))
         self._found = (followed, self.at(z))
@@ -268,6 +272,13 @@ class CollocationProblem(CollocatedProblem):
         ConvergenceError, numpy.linalg.LinAlgError
             If the orbit is not found there.
         """
+        found, moved = self._moved(z, mesh, tangent)
+        if tangent is None:
+            return polished(self, found, moved), moved
+        return followed(self, found, moved)
+
+    def _moved(self, z: Array, mesh: Mesh, tangent: Array | None) -> tuple[Array, Array]:
+        """Return an orbit as its polynomials have it on another mesh, and a direction."""
         curve, times = self.curve(z), equidistant(mesh, self._degree)
         there = Piecewise(mesh, curve(times))
         number = self.history.add(there, self._scales_of(z))
@@ -275,10 +286,9 @@ class CollocationProblem(CollocatedProblem):
         if tangent is None:
             row = np.zeros(len(found))
             row[-1] = 1.0
-            return polished(self, found, row), row
+            return found, row
         moved = Piecewise(curve.mesh, self.nodes(tangent))(times)
-        moved = self.join(moved, float(tangent[-3]), float(tangent[-1]))
-        return followed(self, found, moved)
+        return found, self.join(moved, float(tangent[-3]), float(tangent[-1]))
 
     # ------------------------------------------------------------------ results
 

@@ -49,9 +49,14 @@ class Linearised:
         return Folds(self.transitions, GROWTH)
 
     @cached_property
+    def by_unknowns(self) -> Array:
+        """Derivatives (2, N, m, n) of the values at the Gauss points by u."""
+        return self.stages.solve(self.columns)
+
+    @cached_property
     def ends(self) -> Array:
         """Derivatives (2, N, n) of the ends of the intervals by u."""
-        return self.stages.at_ends(self.columns)
+        return np.asarray(self.gauss.end @ self.by_unknowns)
 
     def from_starts(self, starts: Array) -> Array:
         """Return right-hand sides (c, N, m, n) of starts (c, N, n)."""
@@ -105,16 +110,16 @@ class BorderedIntervals:
             Period and parameter.
         """
         equations, g = self._equations, self._equations.gauss
-        moved = np.zeros((*stages.shape[:2], stages.shape[-1]))
+        values = np.zeros_like(stages)
         active = stages.any(axis=(1, 2, 3))
         if active.any():
-            moved[active] = equations.stages.at_ends(stages[active])
+            values[active] = equations.stages.solve(stages[active])
         border = border - _products(self._adjoint, stages)
+        moved = g.end @ values
         points, unknowns = self._ring.solve(moved.transpose(1, 2, 0), border)
         starts = np.ascontiguousarray(points.transpose(2, 0, 1))
-        rhs = equations.from_starts(starts) + stages
-        rhs += np.tensordot(unknowns.T, equations.columns, 1)
-        values = equations.stages.solve(rhs)
+        values += equations.stages.from_starts(starts)
+        values += np.tensordot(unknowns.T, equations.by_unknowns, 1)
         nodes = np.empty_like(values)
         nodes[:, :, 0] = starts
         nodes[:, :, 1:] = starts[:, :, None] * g.inner_start[:, None] + g.inner @ values

@@ -20,6 +20,8 @@ class Stages(ABC):
     Right-hand sides are shaped (c, N, m, n), c of them at once.
     """
 
+    _gauss: Gauss
+
     @abstractmethod
     def transitions(self) -> Array:
         """Return the derivatives (N, n, n) of the ends of the intervals by their starts."""
@@ -35,6 +37,10 @@ class Stages(ABC):
     @abstractmethod
     def adjoint(self, rhs: Array) -> Array:
         """Return B^-T rhs."""
+
+    def from_starts(self, starts: Array) -> Array:
+        """Return B^-1 A^-1 1 x (c, N, m, n) for x = starts (c, N, n)."""
+        return self.solve(starts[:, :, None] * self._gauss.row_sums[:, None])
 
 
 def interval_matrices(coefficients: Gauss, jacobians: Array, tau: Array) -> Array:

@@ -204,7 +204,7 @@ def all_equilibria(
 
     system, search, remark = on_a_band_that_holds(system, work, traces)
     problem = equilibrium_problem(system, parameter)
-    remarks = [remark] + [""] * (len(search.traces) - 1)
+    remarks = [remark] + [replace(remark, text="")] * (len(search.traces) - 1)
     branches = [
         replace(as_branch(system, problem, found, (low, high), said), connected=connected)
         for found, connected, said in zip(search.traces, search.connected, remarks, strict=True)

@@ -9,7 +9,7 @@ a wider one, unless the user chose the band.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final, TypeVar
 
@@ -23,13 +23,16 @@ from racs_bif.units import after, frequency_unit
 from racs_bif.verbs.assemble import interrupted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+
+    from numpy.typing import NDArray
 
     from racs_bif.continuation.points import Point, Spectrum, Trace
     from racs_bif.equilibria.problem import EquilibriumProblem
     from racs_bif.fractional.system import System
 
     Followed = Sequence[tuple[EquilibriumProblem, Trace]]
+    Flags = NDArray[np.bool_]
 
 Band = tuple[float, float]
 R = TypeVar("R")
@@ -45,11 +48,27 @@ _MARGIN: Final = 2.0
 """How far within its band a realisation is good, as a factor."""
 
 
+@dataclass(frozen=True)
+class Remark:
+    """What is to be said of a band.
+
+    Parameters
+    ----------
+    text : str
+        A sentence, empty where the first band holds.
+    settled : bool
+        Whether no contradiction to the exact equations is left.
+    """
+
+    text: str = ""
+    settled: bool = True
+
+
 def on_a_band_that_holds(
     system: System,
     work: Callable[[System], R],
     traces: Callable[[System, R], Followed],
-) -> tuple[System, R, str]:
+) -> tuple[System, R, Remark]:
     """Follow branches, and again on wider bands until the exact equations agree.
 
     Parameters
@@ -64,32 +83,33 @@ def on_a_band_that_holds(
     Returns
     -------
     system : System
-        The system with the band taken.
+        The system with the band taken: its own, where none settles it.
     result
         Of `work`.
-    remark : str
-        What is to be said of it, empty where the first band holds.
+    remark : Remark
+        What is to be said of it.
     """
-    result = work(system)
+    first = result = work(system)
     own: Band = tuple(system.compiled.meta["band"])
     if not system.fractional or system.settings != choose_realisation(None, own):
-        return system, result, ""
+        return system, result, Remark()
     kept, remark = system, ""
     while True:
         followed = traces(kept, result)
         if any(interrupted(found) for _, found in followed):
-            return kept, result, remark
+            return kept, result, Remark(remark)
         trouble = _trouble(kept, followed)
         if trouble is None:
-            return kept, result, remark
+            return kept, result, Remark(remark)
         (low, high), told = trouble
         if low < _LIMITS[0] * own[0] or high > _LIMITS[1] * own[1]:
-            return kept, result, f"{remark} No band was found that settles it: {told}."
+            return system, first, Remark(f" No wider band settles it: {told}.", settled=False)
         trial = replace(kept, settings=choose_realisation(None, (low, high)))
         try:
             result = work(trial)
         except (ConvergenceError, ParameterError):
-            return kept, result, f"{remark} On a wider band nothing is found: {told}."
+            told = f" On a wider band nothing is found: {told}."
+            return system, first, Remark(told, settled=False)
         kept = trial
         unit = after(frequency_unit(system.time_unit))
         remark = f" The realisation's band was widened to {low:.4g} to {high:.4g}{unit}: {told}."
@@ -128,6 +148,25 @@ def _contradicted(
     return None
 
 
+def contradicted(system: System, problem: EquilibriumProblem, points: Sequence[Point]) -> Flags:
+    """Return at which points (npoints,) the exact equations have another number, or none known."""
+    return np.array(
+        [
+            not point.label and _exact_count(system, problem, place) != point.unstable
+            for point, place in zip(points, _as_places(system, problem, points), strict=True)
+        ],
+        dtype=bool,
+    )
+
+
+def _as_places(
+    system: System, problem: EquilibriumProblem, points: Iterable[Point]
+) -> Iterator[Place]:
+    for point in points:
+        X = system.exact_point(point.z[:-1], problem.path.vector(point.parameter))
+        yield Place(X=X, value=point.parameter)
+
+
 def _places(
     system: System, problem: EquilibriumProblem, found: Trace
 ) -> Iterator[tuple[Place, int]]:
@@ -136,20 +175,15 @@ def _places(
     They are points of the branch and, as near as `certify` counts, places right beside folds and
     branch points: roots there may be slower than the band.
     """
-
-    def place(point: Point) -> Place:
-        X = system.exact_point(point.z[:-1], problem.path.vector(point.parameter))
-        return Place(X=X, value=point.parameter)
-
     for point in _checked(found):
-        yield place(point), point.unstable
+        yield next(_as_places(system, problem, [point])), point.unstable
     special = {point.index for point in found.special}
     for k in (point.index for point in found.special if point.label in _STATIC):
         for j in (k - 1, k + 1):
             if 0 <= k < len(found.points) and 0 <= j < len(found.points) and j not in special:
-                ends = place(found.points[k]), place(found.points[j])
+                start, end = _as_places(system, problem, (found.points[k], found.points[j]))
                 with suppress(ConvergenceError):
-                    beyond = beside(system.exact, problem.path, *ends)
+                    beyond = beside(system.exact, problem.path, start, end)
                     yield beyond, found.points[j].unstable
 
 

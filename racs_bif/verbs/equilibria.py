@@ -23,7 +23,7 @@ from racs_bif.shelf.load import system_of
 from racs_bif.symbolic.model import Model, find_parameter
 from racs_bif.units import after, frequency_unit
 from racs_bif.verbs import assemble
-from racs_bif.verbs.bands import on_a_band_that_holds
+from racs_bif.verbs.bands import Remark, contradicted, on_a_band_that_holds
 from racs_bif.verbs.origin import Origin
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from racs_bif.fractional.system import System
     from racs_bif.symbolic.field import Array
 
+_NONE = Remark()
 _SMALL = 1e-3
 """Share of the span below which a value of the parameter is no measure of its own shift."""
 
@@ -216,11 +217,20 @@ def as_branch(
     problem: EquilibriumProblem,
     found: Trace,
     span: tuple[float, float],
-    remark: str = "",
+    remark: Remark = _NONE,
 ) -> Branch:
-    """Return a traced branch as a result, its Hopf points checked on the exact model."""
+    """Return a traced branch as a result, its Hopf points checked on the exact model.
+
+    On a band that leaves contradictions stability is not told where these are.
+    """
     sentence, early = assemble.stopped(found)
-    sentence += _beyond_band(system, found) + remark
+    sentence += _beyond_band(system, found) + remark.text
+    columns = assemble.columns(found.points)
+    if not remark.settled:
+        early, wrong = True, contradicted(system, problem, found.points)
+        columns["stable"] = columns["stable"] & ~wrong
+        columns["unstable"] = np.where(wrong, -1, columns["unstable"])
+        sentence += f" Stability is left out at {np.count_nonzero(wrong)} points."
     named = [(raw, _special(system, problem, raw, span)) for raw in found.special]
     states = np.array([p.z[:-1] for p in found.points])
     return Branch(
@@ -236,7 +246,7 @@ def as_branch(
         system=describe(system),
         method="pseudo-arclength",
         origin=system,
-        **assemble.columns(found.points),
+        **columns,
     )
 
 

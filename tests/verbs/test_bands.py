@@ -1,5 +1,8 @@
 """Realisations whose band does not hold what decides stability."""
 
+import runpy
+from pathlib import Path
+
 import pytest
 
 import racs_bif as rb
@@ -51,7 +54,48 @@ def test_where_no_band_settles_it_that_is_said(slow, monkeypatch):
     monkeypatch.setattr(bands, "_LIMITS", (0.5, 2.0))
     branch = rb.continue_equilibria(slow, "mu", (-0.01, 0.01))
     assert branch.system.realisation.band == (0.1, 100.0)
-    assert "No band was found that settles it" in branch.stopped
+    assert "No wider band settles it" in branch.stopped
+    assert branch.early
+
+
+def test_where_no_band_settles_it_stability_is_not_told(monkeypatch):
+    """Of this vehicle two roots slower than 1e-6 rad/s cross where no realisation has them."""
+    system = _vehicle(149)
+    monkeypatch.setattr(bands, "_LIMITS", (0.5, 2.0))
+    branch = rb.continue_equilibria(system, "u", (9.5, 11.0))
+    unknown = branch.unstable == -1
+    assert "No wider band settles it" in branch.stopped
+    assert f"Stability is left out at {unknown.sum()} points" in branch.stopped
+    assert 0 < unknown.sum() < 0.5 * len(branch)
+    assert not branch.stable[unknown].any()
+    assert branch.early
+    # all that is told is true
+    failures = rb.certify(branch, "complete").failures
+    assert not any("unstable roots, the exact model has" in check.finding for check in failures)
+
+
+def _vehicle(index):
+    path = Path(__file__).parents[2] / "benchmarks" / "random_vehicles.py"
+    variant, values = runpy.run_path(str(path))["draw"](index)
+    return rb.load_model("racs", parameters=values, variant=variant)
+
+
+@pytest.mark.parametrize(
+    ("index", "span", "u", "omega"),
+    [
+        (204, (16.0, 19.0), 18.4324191983, 0.0601894726),  # slow roots meet beside the fold
+        (348, (14.0, 15.0), 14.6075654901, 0.000400327),  # within the step that has the fold
+        (168, (14.0, 18.0), 15.0513714326, 0.000293267),  # no fold: a root is slow
+    ],
+)
+def test_slow_hopf_points_of_vehicles_are_found(index, span, u, omega):
+    branch = rb.continue_equilibria(_vehicle(index), "u", span)
+    assert "band was widened" in branch.stopped
+    exact = [point.exact for point in branch.special if point.label == "H"]
+    nearest = min(exact, key=lambda point: abs(point.parameters["u"] - u))
+    assert nearest.parameters["u"] == pytest.approx(u, rel=1e-10)
+    assert nearest.omega == pytest.approx(omega, rel=1e-5)
+    assert rb.certify(branch, "complete").holds
 
 
 def test_the_vehicles_own_band_will_do():
