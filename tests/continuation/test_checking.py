@@ -1,9 +1,12 @@
 """Whether a step counts, and for which reason not."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from racs_bif.continuation.checking import CONTRACTION, judge
+from racs_bif.continuation.counting import hides_others
 from racs_bif.continuation.scaling import Scaling
 
 FLAT = np.array([0.0, 1.0])
@@ -51,3 +54,41 @@ def test_a_good_step_says_how_long_the_next_may_be(step, factor):
     assert verdict.accepted
     assert verdict.length == pytest.approx(0.1)
     assert verdict.factor == pytest.approx(factor)
+
+
+class Spectra:
+    """Eigenvalues are real; `hides_others` asks for nothing else."""
+
+    def unstable_beside(self, spectrum, count):
+        order = np.argsort(np.abs(spectrum))
+        return int(np.count_nonzero(spectrum[order[count:]] > 0.0))
+
+
+@pytest.mark.parametrize(
+    ("ends", "events", "hides"),
+    [
+        ((0, 1), [([0.0, -1.0, -2.0], 1)], False),
+        ((1, 0), [([0.0, -1.0, -2.0], 1)], False),
+        ((0, 1), [([0.0, 1.0, -2.0], 1)], True),  # another one has crossed before
+        ((0, 1), [([0.0, 1.0, 2.0], 1)], True),
+        ((2, 1), [([0.0, 1.0, -2.0], 1)], False),
+        ((0, 2), [([0.0, -1.0], 1), ([1.0, 0.0], 1)], False),
+        ((0, 2), [([0.0, -1.0], 1), ([-1.0, 0.0], 1)], True),
+        ((0, 3), [([1e-9, -1e-9, -1.0], 2), ([1.0, 1.0, 0.0], 1)], False),
+        ((0, 1), [([5.0, 5.0], 0), ([0.0, -1.0], 1)], False),  # it explains nothing
+        ((1, 1), [([0.0, 1.0], 1)], False),  # touched only
+        ((3, 3), [], False),
+        ((0, 2), [([0.0, 1.0], 1)], True),
+        ((0, 3), [([0.0, 1.0], 1)], True),
+    ],
+)
+def test_spectra_at_events_show_what_else_is_there(ends, events, hides):
+    a, b = (SimpleNamespace(unstable=count) for count in ends)
+    found = [(SimpleNamespace(spectrum=np.array(spectrum)), n) for spectrum, n in events]
+    assert hides_others(Spectra(), a, b, found) is hides
+
+
+def test_nothing_is_hidden_where_the_spectra_are_not_known():
+    a, b = SimpleNamespace(unstable=0), SimpleNamespace(unstable=5)
+    problem = SimpleNamespace(unstable_beside=lambda _spectrum, _count: None)
+    assert not hides_others(problem, a, b, [(SimpleNamespace(spectrum=np.zeros(2)), 1)])

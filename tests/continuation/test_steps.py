@@ -77,3 +77,11 @@ def test_scaled_norm_counts_span_and_magnitudes():
     assert scaling.grow(np.array([1.0, 3e-5]))
     assert scaling.norm(np.array([2.0, 3e-5, 0])) == pytest.approx(1)
     assert not scaling.grow(np.array([1.0, 1e-5]))
+
+
+def test_a_branch_that_is_vertical_foresees_nothing():
+    scaling = Scaling(10.0, np.array([2.0, 3e-6]))
+    before = scaling.weights.copy()
+    assert not scaling.foresee(np.array([1.0, 1.0, 0.0]))
+    np.testing.assert_array_equal(scaling.weights, before)
+    assert scaling.foresee(np.array([1.0, 1.0, 1e-6]))
