@@ -19,8 +19,9 @@ _SPARE: Final = 1.25
 """How many more intervals are taken than the tolerance asks for."""
 _TOO_MANY: Final = 2.0
 """Intervals are given back when there are so many times more than needed, ..."""
-_HEALTHY: Final = 0.01
-"""... and the error of the trivial multiplier is this far below its bound."""
+_HEALTHY: Final = 1e-3
+"""... and the error of the trivial multiplier is this far below its bound: with half as many
+intervals it is 2**(2 NCOL) times as large."""
 
 
 def better_intervals(

@@ -79,8 +79,10 @@ def called(external: External, start: Array, derivatives: str, why: str) -> tupl
     Raises
     ------
     ModelError
-        If series were asked for and cannot be had.
+        If series were asked for and cannot be had, or the function is defined nowhere near.
     """
+    if not any(np.all(np.isfinite(external.floats(point))) for point in nearby(start)):
+        raise ModelError(_undefined(external))
     title = f"'{external.arguments.function}' is called at every evaluation, which is slow"
     title += f" ({why})." if derivatives == "auto" else "."
     if derivatives != DIFFERENCES:
@@ -101,10 +103,19 @@ def called(external: External, start: Array, derivatives: str, why: str) -> tupl
             "and third ones by differences of these."
         )
     error = _difference_error(external, start, complex_step=False)
+    if not np.isfinite(error):
+        raise ModelError(_undefined(external))
     chosen = External(external.function, external.arguments, DIFFERENCES, error)
     return chosen, (
         f"{title} Its derivatives are by differences; the first have an estimated relative error "
         f"of {error:.1g}, second and third ones are worse, and so are normal forms."
+    )
+
+
+def _undefined(external: External) -> str:
+    return (
+        f"model '{external.arguments.model}': '{external.arguments.function}' is not finite around "
+        "the guess, so that its derivatives cannot be checked; give another guess"
     )
 
 
@@ -146,8 +157,11 @@ def _other_slope(
 
 
 def _difference_error(external: External, start: Array, *, complex_step: bool) -> float:
-    """Return the relative error of first derivatives, from two ways of taking them."""
-    worst = 0.0
+    """Return the relative error of first derivatives, from two ways of taking them.
+
+    It is infinite where the function is defined nowhere around.
+    """
+    worst, compared = 0.0, False
     for point in nearby(start)[:3]:
         direction = _direction(point)
         close = derivative(external.floats, point, [direction], complex_step=False)
@@ -157,5 +171,6 @@ def _difference_error(external: External, start: Array, *, complex_step: bool) -
             return np.inf
         size = np.maximum(np.abs(close).max(initial=0.0), 1e-12)
         if np.all(np.isfinite(close)):
+            compared = True
             worst = max(worst, float(np.abs(other - close).max(initial=0.0) / size))
-    return worst if np.isfinite(worst) else np.inf
+    return worst if compared and np.isfinite(worst) else np.inf

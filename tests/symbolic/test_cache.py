@@ -319,3 +319,13 @@ def test_two_processes_compiling_the_same_model_at_once(folder):
     told = [float(run.communicate()[0]) for run in runs]
     assert told == [-6.0, -6.0]
     assert len(list(folder.iterdir())) == 2
+
+
+def test_the_folder_of_each_system(monkeypatch, tmp_path):
+    monkeypatch.delenv("RACS_BIF_CACHE", raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr("sys.platform", "darwin")
+    assert cache.folder() == tmp_path / "Library" / "Caches" / "racs_bif"
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    assert cache.folder() == tmp_path / ".cache" / "racs_bif"

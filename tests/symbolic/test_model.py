@@ -254,3 +254,24 @@ def test_inputs_are_parameters():
     assert model.inputs == ("f",)
     with pytest.raises(ModelError, match="input 'ff' is no parameter; did you mean 'f'"):
         Model(name="m", equations=equations, parameters=parameters, inputs=("ff",))
+
+
+def test_powers_that_sympy_leaves_unevaluated():
+    rates = {
+        "x": sp.Pow(sp.E, a * x, evaluate=False),
+        "y": sp.Pow(x, 0, evaluate=False) + sp.Pow(1, y, evaluate=False) + y,
+    }
+    compiled = compile_model(build(equations=rates))
+    found = compiled.core(np.array([0.5, 0.25]), np.array([2.0]))
+    np.testing.assert_allclose(found, [math.e, 2.25], rtol=1e-15)
+    jacobian = compiled.core_jacobian(np.array([0.5, 0.25]), np.array([2.0]))
+    np.testing.assert_allclose(jacobian, [[2.0 * math.e, 0.0], [0.0, 1.0]], rtol=1e-15)
+
+
+def test_a_term_may_hold_the_output_of_an_element():
+    v = sp.Symbol("v")
+    model = build(equations={"x": -a * v}, terms={"v": w**2 + 1}, elements=(element(),))
+    compiled = compile_model(model)
+    # X = (x, memory of w), P = (a, D): w = memory + D x
+    found = compiled.core(np.array([3.0, 0.5]), np.array([2.0, 10.0]))
+    np.testing.assert_array_equal(found, [-2.0 * (30.5**2 + 1.0), 3.0])
