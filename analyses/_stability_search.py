@@ -102,7 +102,7 @@ class Search:
     def solve(self, owner: NDArray[np.intp], stiffness: Array, X: Array) -> Nodes:
         """Return nodes, their equilibria solved near X and their unstable roots counted."""
         P = self.parameters(owner, stiffness)
-        X, found = self.sheet.newton(X, P)
+        X, found, _ = self.sheet.newton(X, P)
         found &= np.abs(X[self.angle]) < NEAR
         X[:, ~found] = np.nan
         count = np.full(len(owner), NONE, dtype=np.int64)
@@ -154,7 +154,7 @@ class Search:
     ) -> tuple[Array, NDArray[np.bool_]]:
         """Take one step; one so long that it may have gone over a fold is none."""
         P = self.parameters(owner, np.full(len(owner), stiffness))
-        tried, good = self.sheet.newton(X, P)
+        tried, good, _ = self.sheet.newton(X, P)
         sideslip = np.abs(tried[self.lateral] - X[self.lateral]) / P[self.speed]
         turned = np.abs(tried[self.angle] - X[self.angle])
         return tried, good & (sideslip < _STEP) & (turned < _STEP)

@@ -25,6 +25,8 @@ Key = tuple[int, int]
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
 _SHORT_OF = 0.97
 _ASIDE = (0.0137, 0.0419, 0.1093)
+_UNEQUAL = np.array([1.0, 0.6])
+"""Shares of a move aside: along a diagonal it would not leave a boundary that runs along it."""
 _TRIALS = (0.5, 0.0, 1.0, 0.25, 0.75)
 
 
@@ -247,7 +249,8 @@ class Lattice:
 
     def _aside(self, places: Array, by: float) -> Array:
         """Return places moved inwards by a share of the finest spacing."""
-        return np.asarray(places + by / self.side * np.where(places > 0.5, -1.0, 1.0))
+        inwards = np.where(places > 0.5, -1.0, 1.0)
+        return np.asarray(places + by / self.side * _UNEQUAL[:, None] * inwards)
 
     def _record(self, keys: list[Key], X: Array, at: Array) -> None:
         self._scale = None

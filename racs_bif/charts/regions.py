@@ -73,7 +73,8 @@ def regions(lattice: Lattice, boundaries: list[Boundary]) -> tuple[Region, ...]:
             count = int(counts[inside[int(np.argmax(room))]])
         else:
             count = _counted(lattice, place)
-        wrong = int(np.count_nonzero(counts[inside] != count))
+        known = counts[inside][counts[inside] != UNCOUNTED]
+        wrong = int(np.count_nonzero(known != count))
         if wrong > _MIXED * len(inside):
             count = UNCOUNTED
         found.append(Region(face, count, place, len(inside), wrong))

@@ -311,9 +311,10 @@ class Chart:
             found[inside] = region.unstable
             doubtful |= inside & (region.disagreeing > 0)
         if np.any(doubtful):
-            nodes = (self.node_values - low) / (high - low)
+            known = self.node_counts != -1
+            nodes = (self.node_values[known] - low) / (high - low)
             near = [int(np.hypot(*(nodes - place).T).argmin()) for place in unit[doubtful]]
-            same = self.node_counts[near] == found[doubtful]
+            same = self.node_counts[known][near] == found[doubtful]
             found[doubtful] = np.where(same, found[doubtful], -1)
         return found
 

@@ -86,3 +86,10 @@ def test_an_unwritable_target_is_one_line(cli, folder):
     told = cli("report", folder, "--to", folder / "branches.nc" / "page.html")
     assert _one_line(told)
     assert "cannot write" in told.err
+
+
+def test_one_branch_alone_is_shown_too(cli, tmp_path, known):
+    save(known.equilibria(), tmp_path / "branches.nc")
+    told = cli("report", tmp_path)
+    assert told.status == 0, told.err
+    assert "EQ1" in (tmp_path / "report.html").read_text(encoding="utf-8")

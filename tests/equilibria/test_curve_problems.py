@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import racs_bif as rb
-from racs_bif.errors import ParameterError, UsageError
+from racs_bif.errors import ConvergenceError, ParameterError, UsageError
 from racs_bif.fractional.static import StaticField
 from racs_bif.shelf.load import system_of
 from racs_bif.verbs import curves
@@ -332,3 +332,39 @@ def test_orbits_that_a_point_cannot_predict_are_refused(shimmy):
         predict_orbits(shimmy, "lpc")
     with pytest.raises(UsageError, match="unknown kind of orbit"):
         predict_orbits(shimmy, "pd")
+
+
+def test_no_torus_starts_at_a_zero_hopf_point_of_the_other_sign():
+    model = rb.model_from_strings(
+        "zero-Hopf",
+        {
+            "z": "m1 + z**2 + s*(x**2+y**2)",
+            "x": "(m2 + t*z - z**2)*x - 2*y",
+            "y": "(m2 + t*z - z**2)*y + 2*x",
+        },
+        parameters={"m1": -0.5, "m2": 0.2, "s": 1.0, "t": 0.8},
+        guess={"z": -0.7, "x": 0.0, "y": 0.0},
+    )
+    branch = rb.continue_equilibria(model, "m1", (-0.6, 0.3))
+    curve = continue_curve(branch["LP1"], ("m1", "m2"), ((-0.6, 0.3), (-1.0, 1.0)))
+    with pytest.raises(ConvergenceError, match="no Neimark-Sacker curve starts at this zero-Hopf"):
+        predict_orbits(curve["ZH1"], "ns", 0.05)
+
+
+def test_what_a_point_predicts_is_in_its_own_plane():
+    model = rb.model_from_strings(
+        "takens",
+        {"x": "y", "y": "b1 + b2*y + a*x**2 + b*x*y"},
+        parameters={"b1": -0.5, "b2": 0.4, "a": 1.0, "b": 1.0},
+        guess={"x": 0.7, "y": 0.0},
+    )
+    spans = ((-0.6, 0.3), (-1.0, 1.0))
+    branch = rb.continue_equilibria(model, "b1", (-0.6, 0.3))
+    point = continue_curve(branch["LP1"], ("b1", "b2"), spans)["BT1"]
+    with pytest.raises(UsageError, match="homoclinic orbits in the plane of b1 and b2 only"):
+        continue_curve(point, ("b1", "a"), ((-0.6, 0.3), (0.5, 2.0)), kind="homoclinic")
+    normal = rb.continue_equilibria(bautin(), "b1", (-1.0, 1.0))
+    curve = continue_curve(normal["H1"], ("b1", "b2"), ((-1.0, 1.0), (-1.0, 1.0)))
+    words = "GH1 predicts cycles in the plane of b1 and b2, in which it was found"
+    with pytest.raises(UsageError, match=words):
+        continue_curve(curve["GH1"], ("b2", "b1"), ((-1.0, 1.0), (-1.0, 1.0)), kind="lpc")

@@ -12,7 +12,7 @@ from racs_bif.fractional.certificates import Place, beside, changes, exact_count
 from racs_bif.fractional.enclosed import EnclosedModel
 from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
-from racs_bif.fractional.intervals import BALLS, Ball, BallFunctions, UnboundedError
+from racs_bif.fractional.intervals import BALLS, Ball, BallFunctions, UnboundedError, finite
 from racs_bif.fractional.krawczyk import NoneThereError
 from racs_bif.fractional.proofs import _Fold, _Hopf, prove_fold, prove_hopf
 
@@ -293,3 +293,23 @@ def test_what_special_points_allow():
     assert changes(["H"]) == {-2, 2}
     assert changes(["BP"]) == {-1, 0, 1}
     assert changes(["H", "H"]) == {-4, 0, 4}
+
+
+def test_a_ball_is_no_text_and_infinite_ones_bound_nothing():
+    assert Ball(arb(1)) != "1"
+    assert finite(arb(1)) == 1
+    with pytest.raises(UnboundedError, match="the equations are not finite everywhere in the box"):
+        finite(arb(1) / arb(0, 1))
+
+
+def test_nothing_is_proved_of_a_function_that_is_called():
+    import racs_bif as rb
+    from racs_bif.shelf.load import system_of
+
+    def rates(x, p):
+        return [float(x[1]), -x[0] + p.mu * x[1]]
+
+    model = rb.model_from_function("called", rates, states="x y", parameters={"mu": 0.1})
+    system = system_of(model)
+    with pytest.raises(UsageError, match="nothing can be proved of equations that call a Python"):
+        prove_hopf(system.exact, system.path("mu"), np.zeros(2), 0.0, 1.0)

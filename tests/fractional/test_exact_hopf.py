@@ -7,7 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 from racs_bif.errors import ConvergenceError
+from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
+from racs_bif.fractional.realised_hopf import solve_realised_hopf
 
 # model.md, section 4: one parameter changed -> u_H and omega_H of the exact model
 VEHICLE = {
@@ -209,3 +211,24 @@ def test_few_iterations(vehicle, monkeypatch):
     X = system.exact_point(system.equilibrium(), system.values)
     solve_hopf(system.exact, system.path("u"), X, 10.25, 9.5)
     assert len(calls) <= 6
+
+
+def test_a_parameter_that_moves_nothing_has_no_hopf_point_and_no_fold(system_of):
+    equations = {"x": "mu*x - y - x**3", "y": "x + mu*y"}
+    system = system_of(equations, parameters={"mu": 0.1, "idle": 1.0}, guess={"x": 0.0, "y": 0.0})
+    found = solve_hopf(system.exact, system.path("mu"), np.zeros(2), 0.1, 1.1)
+    assert (found.value, found.omega) == (pytest.approx(0.0, abs=1e-12), pytest.approx(1.0))
+    with pytest.raises(ConvergenceError):
+        solve_hopf(system.exact, system.path("idle"), np.zeros(2), 1.0, 1.1)
+    with pytest.raises(ConvergenceError):
+        solve_fold(system.exact, system.path("idle"), np.zeros(2), 1.0)
+
+
+def test_a_real_eigenvalue_is_no_realised_hopf_point(system_of):
+    system = system_of(
+        {"x": "(mu - 3)*x + x**2", "y": "x - 5*y"},
+        parameters={"mu": 1.0},
+        guess={"x": 0.0, "y": 0.0},
+    )
+    with pytest.raises(ConvergenceError, match="no Hopf point of the realised system near mu = 1"):
+        solve_realised_hopf(system, system.path("mu"), np.zeros(2), 1.0, 0.0)

@@ -3,12 +3,13 @@ import math
 import mpmath
 import numpy as np
 import pytest
+import sympy as sp
 
 from racs_bif.errors import ModelError, ParameterError, UsageError
 from racs_bif.fractional.creep import creep, relaxation
 from racs_bif.fractional.law_numbers import law_in_numbers
 from racs_bif.fractional.moduli import moduli
-from racs_bif.fractional.passivity import passivity
+from racs_bif.fractional.passivity import _text, passivity
 from racs_bif.fractional.real_powers import positive_zeros
 from racs_bif.shelf.load import load_model
 from racs_bif.symbolic import named_laws as named
@@ -68,8 +69,6 @@ def test_bands_agree_with_a_scan():
         expression = (
             f"({values[0]} + {values[1]}*s**{c})/({values[2]} + s**{a} + {values[3]}*s**{b})"
         )
-        import sympy as sp
-
         law = law_in_numbers(sp.sympify(expression))
         found = passivity(law)
         for bands, part in (
@@ -156,7 +155,24 @@ def test_what_is_refused():
         law_in_numbers(named.springpot(1.0, "alpha"))
     with pytest.raises(ParameterError, match="did you mean 'alpha'"):
         law_in_numbers(named.springpot(1.0, "alpha"), {"alpha": 0.5, "alhpa": 0.5})
-    import sympy as sp
 
     with pytest.raises(ModelError):
         law_in_numbers(sp.exp(sp.Symbol("s")))
+
+
+def test_times_of_laws_are_positive():
+    tau, alpha, s = sp.symbols("tau alpha s")
+    law = 1 + tau**alpha * s**alpha
+    assert law_in_numbers(law, {"tau": 4.0, "alpha": 0.5})(np.array([4.0])) == pytest.approx(5.0)
+    with pytest.raises(ParameterError, match="is not real at these parameters; keep its times"):
+        law_in_numbers(law, {"tau": -4.0, "alpha": 0.5})
+
+
+def test_bands_in_words():
+    s = sp.Symbol("s")
+    # At i w its real part is (2 - w**2)/(1 + w**2).
+    (band,) = passivity(law_in_numbers((s**2 + 2) / (s + 1))).negative_stiffness
+    assert _text(band) == "> 1.414 rad/s"
+    assert _text((0.0, 2.0)) == "< 2 rad/s"
+    assert _text((1.0, 2.0)) == "in 1 .. 2 rad/s"
+    assert _text((0.0, np.inf)) == "at all frequencies"

@@ -1,10 +1,14 @@
 """Laws of realisations as quotients of polynomials."""
 
+import pickle
+
 import numpy as np
 import pytest
 
+from racs_bif.errors import UsageError
 from racs_bif.fractional.diffusive import Diffusive
-from racs_bif.fractional.rational import RationalSystem, rational
+from racs_bif.fractional.filter import Filter
+from racs_bif.fractional.rational import RationalSystem, _slope, rational
 
 
 @pytest.mark.parametrize(
@@ -33,3 +37,39 @@ def test_derivatives_of_the_quotient(system_of, differences):
         slope = field.laws(p)[0].along(moved, s)
         expected = differences(lambda h, dp=dp: field.laws(p + h * dp)[0](s), 0.0, 1e-4)
         np.testing.assert_allclose(slope, expected, rtol=1e-7)
+
+
+def test_a_rational_system_is_pickled_as_what_makes_it(system_of):
+    realisation = Diffusive(band=(0.1, 10.0), order=5)
+    elements, parameters = [("Z", "0", "k + 1/s**q")], {"q": 0.4, "k": 2.0}
+    system = system_of({}, elements=elements, parameters=parameters, realisation=realisation)
+    field = RationalSystem.of(system).exact.field
+    again = pickle.loads(pickle.dumps(field))
+    s = np.array([0.4 + 1.3j, 3.0j])
+    np.testing.assert_array_equal(again.laws(system.values)[0](s), field.laws(system.values)[0](s))
+
+
+def lag(rate, *, moved=0.0, gain=1.0):
+    """Return the filter gain / (s + rate), or its derivative where the rate moves."""
+    A = np.array([[-rate, 0.0], [0.0, -2.0 * rate]]) if not moved else np.diag([-moved, -3.0])
+    ends = np.array([1.0, 0.5]) if not moved else np.zeros(2)
+    return Filter(A, ends, gain * np.ones(2) if not moved else np.zeros(2), 0.0)
+
+
+def test_derivatives_where_poles_move():
+    done, moved = lag(1.5), lag(1.5, moved=0.7)
+    slope = _slope("law", done, moved)
+    s = 1j * np.geomspace(0.1, 10.0, 7)
+    # d/dp of b c / (s - a) is b c a' / (s - a)**2; b c is (1, 1/2), a' (-0.7, -3).
+    wanted = -0.7 / (s + 1.5) ** 2 - 3.0 * 0.5 / (s + 3.0) ** 2
+    bottom = (s + 1.5) * (s + 3.0)
+    parts = slope.numerator, slope.denominator
+    top, below = (np.polyval(part.coefficients[::-1], s) for part in parts)
+    found = (top - below * done(s)) / bottom
+    np.testing.assert_allclose(found, wanted, rtol=1e-10)
+
+
+def test_filters_that_are_no_quotients_of_ours_are_refused():
+    bent = Filter(np.array([[-1.0, 1.0], [0.0, -2.0]]), np.ones(2), np.ones(2), 0.0)
+    with pytest.raises(UsageError, match="bent"):
+        _slope("bent", bent, bent)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from racs_bif.errors import ConvergenceError
+from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.fractional.charef import Charef
 from racs_bif.fractional.compare import compare, is_passive
 from racs_bif.fractional.diffusive import Diffusive
@@ -152,3 +152,29 @@ def test_nonnegative_relaxation_is_passive():
 def test_no_exact_hopf_point_is_an_error(racs):
     with pytest.raises(ConvergenceError, match="no exact Hopf point"):
         compare(racs.with_parameters({"alpha": 0.6}), [Fitted(band=BAND)], hopf=HOPF)
+
+
+def test_an_integrating_law_has_no_static_error_and_its_integrator_is_no_pole(system_of):
+    system = system_of(
+        {"x": "-x - w"}, elements=[("w", "x", "k + 1/s**q")], parameters={"k": 2.0, "q": 0.6}
+    )
+    (row,) = compare(system, [Diffusive(band=(0.1, 10.0), order=6)])
+    assert not row.refused
+    assert row.static_error == 0.0
+    assert row.largest_pole < 0.0
+    assert row.real_poles
+
+
+def test_a_hopf_point_is_compared_from_an_estimate_of_its_state(racs):
+    plain = compare(racs, [Diffusive(band=BAND)], hopf=HOPF)
+    p = racs.path("u").vector(HOPF[1])
+    X = racs.exact_point(racs.equilibrium(p), p)
+    assert compare(racs, [Diffusive(band=BAND)], hopf=HOPF, X=X)[0].hopf_error == pytest.approx(
+        plain[0].hopf_error, rel=1e-6
+    )
+
+
+def test_a_spread_is_a_factor():
+    for spread in (0.0, -1.0, math.inf):
+        with pytest.raises(UsageError, match=r"spread .* is not usable; give a positive factor"):
+            NonNegative(band=BAND, spread=spread)

@@ -1,5 +1,8 @@
 """Feedback put around models."""
 
+import math
+from dataclasses import replace
+
 import control
 import numpy as np
 import pytest
@@ -100,3 +103,21 @@ def test_where_equations_are_not_to_be_had(pendulum):
 
     with pytest.raises(ModelError, match="is to be calibrated"):
         rb.with_feedback(load_module(find("models", "racs")).model())
+
+
+def test_terms_are_looked_into_for_what_closes_a_loop():
+    def rates(x, p):
+        pull = sum(math.cos(k * x[0]) for k in range(1, 18))
+        push = sum(math.sin(k * p.T) for k in range(1, 18))
+        return [x[1] + 2 * pull, push - x[0]]
+
+    recorded = rb.model_from_function("long", rates, states="x y", parameters={"T": 0.0})
+    assert len(recorded.terms) > 1
+    direct = replace(recorded, outputs={"push": recorded.equations["y"]})
+    with pytest.raises(ModelError, match="output 'push' depends on 'T' without delay"):
+        rb.with_feedback(direct, {"T": "2*push"})
+    delayed = replace(recorded, outputs={"pull": recorded.equations["x"]})
+    held = rb.with_feedback(delayed, {"T": "2*pull"})
+    used = {str(symbol) for e in held.terms.values() for symbol in e.free_symbols}
+    assert {"x", "y"} <= used
+    assert "T" not in used

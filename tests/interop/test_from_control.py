@@ -131,3 +131,19 @@ def test_what_no_model_can_be_made_of(pendulum):
         rb.from_control(control.nlsys(swing, inputs=["t"], states=["a", "b"], outputs=2))
     with pytest.raises(ModelError, match="differentiates"):
         rb.from_control(control.tf([1, 0, 0], [1, 1]))
+
+
+def test_a_system_without_outputs_of_its_own_gives_its_states():
+    def rates(t, x, u, params):
+        return np.array([x[1], -x[0] + u[0]])
+
+    plain = control.nlsys(rates, None, inputs=["f"], outputs=2, states=["x", "v"], name="bare")
+    model = rb.from_control(plain)
+    assert [str(e) for e in model.outputs.values()] == ["x", "v"]
+
+
+def test_names_that_begin_with_a_digit():
+    system = control.ss([[-1.0]], [[1.0]], [[1.0]], [[0.0]], inputs=["2nd"], states=["1st"])
+    model = rb.from_control(system)
+    assert list(model.equations) == ["_1st"]
+    assert model.inputs == ("_2nd",)

@@ -64,3 +64,30 @@ def test_positive_minimum_is_no_dip(height):
         return math.cosh(x - 0.4) - 1 + height
 
     assert dip(Counted(function), (0.0, 1.0, function(0.0), function(1.0)), 0.5) is None
+
+
+def test_a_bracket_of_neighbouring_numbers_is_left_as_it_is():
+    above = math.nextafter(1.0, 2.0)
+
+    def never(x, low, high):
+        raise AssertionError
+
+    assert root(never, (1.0, above, -1.0, 1.0), 0.0) == (1.0, above, -1.0, 1.0)
+
+
+def test_a_root_is_looked_for_only_so_often():
+    trials = []
+
+    def sign(x, low, high):
+        trials.append(x)
+        return x, math.copysign(1.0, x - 1e-250)
+
+    a, b, fa, fb = root(sign, (0.0, 1.0, -1.0, 1.0), 1e-300)
+    assert a <= 1e-250 <= b
+    assert (fa, fb) == (-1.0, 1.0)
+    assert 20 < len(trials) < 1000
+
+
+def test_points_out_of_order_have_no_vertex():
+    assert all(map(math.isnan, vertex((0.0, 0.0, 1.0), (1.0, 0.0, 1.0))))
+    assert all(map(math.isnan, vertex((0.0, 2.0, 1.0), (1.0, 0.0, 1.0))))

@@ -77,3 +77,15 @@ def test_sparse_pays_for_large_and_empty_matrices_only():
     assert sparse.worthwhile(eye)
     assert not sparse.worthwhile(eye[1:, 1:])
     assert not sparse.worthwhile(ss.csc_array(np.ones((sparse.LARGE, sparse.LARGE))))
+
+
+def test_a_matrix_that_is_singular_but_for_rounding_is_refused():
+    rows = np.eye(60)
+    rows[:2, :2] = [[0.1, 0.2], [0.3, 0.6 + 1e-16]]
+    assert np.linalg.det(rows) != 0.0
+    with pytest.raises(np.linalg.LinAlgError, match=r"the matrix is singular$"):
+        sparse.Factors(ss.csc_array(rows))
+    rows[1, 1] += 1e-3
+    right = np.arange(60.0)
+    found = sparse.Factors(ss.csc_array(rows)).solve(right)
+    np.testing.assert_allclose(rows @ found, right, atol=1e-10)

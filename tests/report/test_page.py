@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from racs_bif.errors import UsageError
-from racs_bif.report.data import kept_orbits, page_data
+from racs_bif.report.data import _begins, kept_orbits, page_data, quantities
 from racs_bif.report.names import axis_label
 from racs_bif.report.page import page
 from racs_bif.report.vehicle import geometry, yaw_angle
@@ -94,3 +94,39 @@ def test_only_a_vehicle_with_a_steered_rear_axle_is_drawn(known):
     vehicle = replace(system, states=("v", "w", "delta_c"), parameters=numbers)
     assert geometry(vehicle) == numbers
     assert page_data(Diagram(known.equilibria()), "v")["vehicle"] is None
+
+
+def test_an_ordinary_model_without_special_points(known):
+    branch = known.equilibria()
+    system = replace(branch.system, realisation=None, variant="")
+    labels = ["" for _ in branch.labels]
+    plain = replace(branch, special=(), labels=labels, system=system)
+    text = page(Diagram(plain))
+    assert "<p>There is no special point in this span.</p>" in text
+    assert "none: the model has no fractional element" in text
+    assert "<td>variant</td>" not in text
+    assert "variant" in page(Diagram(branch))
+
+
+def test_the_page_begins_at_the_first_thing_of_interest(known):
+    branch = known.equilibria()
+    ordinary = replace(branch, special=branch.special[1:])
+    without = replace(known.orbits(), profiles={})
+    assert _begins(Diagram(ordinary)) == [0, 0]
+    assert _begins(Diagram(ordinary, replace(branch, name="EQ2"))) == [1, branch["H1"].index]
+    place = without["NS1"].index
+    assert _begins(Diagram(ordinary, without)) == [1, place]
+
+
+def test_a_curve_shows_its_second_parameter(known):
+    branch = known.equilibria()
+    values = np.column_stack([branch.parameter, 2.0 * branch.parameter])
+    curve = replace(branch, kind="curve", parameters=("u", "m"), values=values)
+    found = quantities(curve)
+    assert list(found) == ["m"]
+    np.testing.assert_array_equal(found["m"][0], values[:, 1])
+
+
+def test_an_orbit_that_takes_no_time_does_not_turn():
+    profile = Profile(times=np.zeros(1), names=("v", "w"), states=np.ones((1, 2)))
+    np.testing.assert_array_equal(yaw_angle(profile), [0.0])

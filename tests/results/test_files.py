@@ -173,7 +173,10 @@ def test_arrays_of_every_kind_come_back_with_their_type(branch, tmp_path):
 
 
 def test_an_array_of_words_is_refused_by_name(branch, tmp_path):
-    special = (replace(branch.special[0], data={"words": np.array(["a", "b"])}), *branch.special[1:])
+    special = (
+        replace(branch.special[0], data={"words": np.array(["a", "b"])}),
+        *branch.special[1:],
+    )
     with pytest.raises(TypeError, match="H1: 'words' holds <U1, a file takes numbers and words"):
         save(replace(branch, special=special), tmp_path / "words.nc")
     assert not (tmp_path / "words.nc").exists()

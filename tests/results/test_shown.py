@@ -222,7 +222,7 @@ def test_a_special_point_that_does_not_know_its_system_has_no_units():
     text = shown(branch["H1"])
     assert re.search(r"\bu 10 10\.001\b", text)
     assert "[m/s]" not in text
-    assert "eigenvector 1+0j, -0-1j, nan+nanj" in text or "eigenvector 1+0j" in text
+    assert "eigenvector 1+0j, -0-1j, nan+0j" in text
     large = replace(branch["H1"], data={"wave": np.zeros(400), "flags": np.array([True])})
     assert "wave array (400,)" in shown(large)
     assert "flags array (1,)" in shown(large)

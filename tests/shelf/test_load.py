@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import racs_bif as rb
 from racs_bif.errors import ModelError, ParameterError, RacsBifError, UsageError
 from racs_bif.shelf.load import load_model, system_of
+from racs_bif.symbolic.model import Calibration, Model, Parameter
 
 ROOT = Path(__file__).parents[2]
 SPRING = """
@@ -334,3 +336,19 @@ def test_every_error_is_for_users():
     for kind in (ModelError, ParameterError, UsageError):
         assert issubclass(kind, RacsBifError)
         assert issubclass(kind, ValueError)
+
+
+def test_a_calibration_must_set_what_it_is_the_default_of():
+    growth = sp.sympify("a + b - 2")
+    x, y = sp.symbols("x y")
+    model = Model(
+        name="turned",
+        equations={"x": growth * x - y, "y": x + growth * y},
+        parameters=(
+            Parameter("a", 0.0),
+            Parameter("b", 1.0),
+            Parameter("k", Calibration("b", {"a": 0.0}, (1.0, 3.5))),
+        ),
+    )
+    with pytest.raises(ModelError, match="calibrating 'b' does not set 'k'"):
+        system_of(model)

@@ -97,3 +97,11 @@ def test_nothing_else_is_found():
     for name in ("models.gone", "files.gone", "elsewhere.racs"):
         with pytest.raises(ModuleNotFoundError):
             importlib.import_module(f"racs_bif.shelf.{name}")
+
+
+def test_only_the_folders_of_the_shelf_are_looked_into():
+    from racs_bif.shelf.modules import _Finder
+
+    assert _Finder.find_spec("racs_bif.shelf.models.racs") is not None
+    assert _Finder.find_spec("racs_bif.shelf.recipes.racs") is None
+    assert _Finder.find_spec("racs_bif.models.racs") is None

@@ -1,17 +1,21 @@
 """Many simulations at once: as accurate as one at a time, and none stops the others."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 import racs_bif as rb
 from racs_bif.errors import ParameterError, UsageError
+from racs_bif.fractional.bank import Bank
+from racs_bif.fractional.diffusive import Diffusive
+from racs_bif.fractional.filter import Filter, Realisation
 from racs_bif.fractional.realisations import choose_realisation
 from racs_bif.shelf.load import system_of
 from racs_bif.simulation import march, rosenbrock
-from racs_bif.simulation.batch import BatchSettings, members, run_batch
+from racs_bif.simulation.batch import BatchSettings, initial, members, run_batch
 from racs_bif.simulation.batch_field import BatchField
+from racs_bif.simulation.batch_filters import _modal
 from racs_bif.simulation.pieces import Piece
 from racs_bif.simulation.watchers import Extremes, Section
 
@@ -241,3 +245,90 @@ def test_unknown_names(linear):
 def test_settings_out_of_range(bad):
     with pytest.raises(UsageError, match="batch"):
         BatchSettings(**bad)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turned(Diffusive):
+    """The same filter in other coordinates."""
+
+    bend: float = 1.0
+
+    def realise(self, law):
+        plain = super().realise(law)
+        n = len(plain.A)
+        T = np.eye(n) + self.bend * np.triu(np.ones((n, n)), 1)
+        back = np.linalg.inv(T)
+        return Filter(T @ plain.A @ back, T @ plain.B, plain.C @ back, plain.D)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Companion(Realisation):
+    """The law k / (s**2 + d s + 1) as it is."""
+
+    damping: float
+
+    @property
+    def name(self):
+        return "companion"
+
+    def realise(self, law):
+        A = np.array([[0.0, 1.0], [-1.0, -self.damping]])
+        return Filter(A, np.array([0.0, 1.0]), np.array([1.0, 0.0]), 0.0)
+
+    def derivative(self, law, direction):
+        return Filter(np.zeros((2, 2)), np.zeros(2), np.zeros(2), 0.0)
+
+
+def test_filters_in_other_coordinates_are_the_same_filters(springpot):
+    plain = Diffusive(band=(0.1, 10.0), order=4)
+    system = replace(springpot("diffusive"), settings=plain)
+    turned = replace(system, settings=Turned(band=(0.1, 10.0), order=4))
+    values = {"a": np.array([0.3, 0.5])}
+    start = np.array([[1.0, 0.3], [0.5, 0.0]])
+    wanted = run_batch(system, values=values, starts=start, duration=3.0)
+    found = run_batch(turned, values=values, starts=start, duration=3.0)
+    np.testing.assert_allclose(found.final[:, :2], wanted.final[:, :2], rtol=1e-6)
+    # The memory is told in the realisation's own coordinates, and taken in them.
+    T = np.eye(4) + np.triu(np.ones((4, 4)), 1)
+    np.testing.assert_allclose(found.final[:, 2:], wanted.final[:, 2:] @ T.T, rtol=1e-5, atol=1e-8)
+    further = run_batch(turned, values=values, starts=found.final, duration=1.0)
+    expected = run_batch(system, values=values, starts=wanted.final, duration=1.0)
+    np.testing.assert_allclose(further.final[:, :2], expected.final[:, :2], rtol=1e-5)
+
+
+@pytest.mark.parametrize("damping", [0.2, 2.0])
+def test_filters_whose_poles_do_not_stand_alone(damping):
+    model = rb.model_from_strings(
+        "resonant",
+        {"x": "y", "y": "-x - y + c*w"},
+        parameters={"c": 0.5, "d": damping},
+        elements=[("w", "x", "1/(s**2 + d*s + 1)")],
+    )
+    settings = Companion(band=(0.1, 10.0), damping=damping)
+    system = replace(system_of(model), settings=settings)
+    start = np.array([[1.0, 0.3], [0.5, 0.0]])
+    found = run_batch(system, values={}, starts=start, duration=4.0)
+    whole = rb.model_from_strings(
+        "ordinary",
+        {"x": "y", "y": "-x - y + c*z", "z": "v", "v": "x - z - d*v"},
+        parameters={"c": 0.5, "d": damping},
+    )
+    rest = np.column_stack([start, start[:, 0], np.zeros(2)])  # w = x: the filter is at rest
+    wanted = run_batch(system_of(whole), values={}, starts=rest, duration=4.0)
+    np.testing.assert_allclose(found.final, wanted.final, atol=1e-5)
+
+
+def test_coordinates_that_would_cost_digits_are_left_as_they_are():
+    # Eigenvectors that differ by 1e-13 give gains of 1e13, which cancel.
+    near = np.array([[-1.0, 1.0], [0.0, -1.0 - 1e-13]])
+    bent = Filter(near, np.array([0.0, 1.0]), np.array([1.0, 0.0]), 0.0)
+    assert _modal(Bank.of((bent,), 0)) is None
+    apart = replace(bent, A=np.array([[-1.0, 1.0], [0.0, -2.0]]))
+    poles, coupling, *_ = _modal(Bank.of((apart,), 0))
+    np.testing.assert_allclose(sorted(poles), [-2.0, -1.0])
+    assert not coupling.any()
+
+
+def test_a_batch_begins_at_rest_where_nothing_else_is_said(linear):
+    field = BatchField(linear, members(linear, {"k": np.array([1.0, 4.0, 9.0])}))
+    np.testing.assert_array_equal(initial(field, None), np.zeros((2, 3)))

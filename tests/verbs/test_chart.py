@@ -255,3 +255,24 @@ def test_slices_that_cannot_be(island, slices, message):
 def test_places_that_are_not_in_the_chart(chart, place, message):
     with pytest.raises(UsageError, match=message):
         chart.unstable_at(**place)
+
+
+def test_slices_have_maps_of_their_own():
+    model = rb.model_from_strings(
+        "turning", {"x": "a*x - w*y", "y": "w*x + a*y + b"}, parameters={"a": -1.0, "b": 0, "w": 1}
+    )
+    slices = rb.chart_slices(
+        model,
+        "a",
+        "b",
+        ((-1.0, 1.0), (-1.0, 1.0)),
+        ("w", (1.0, 2.0)),
+        quantity="damping",
+        shape=(4, 3),
+        settings=ChartSettings(coarse=3, depth=3),
+    )
+    assert slices.values == (1.0, 2.0)
+    expected = np.broadcast_to(np.linspace(-0.75, 0.75, 4)[:, None], (4, 3))
+    for chart, omega in zip(slices, slices.values, strict=True):
+        np.testing.assert_allclose(chart.map.sigma, expected, atol=1e-9)
+        np.testing.assert_allclose(chart.map.omega, omega, rtol=1e-9)

@@ -1,5 +1,7 @@
 """Branches of orbits from every kind of start, and how they end."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from racs_bif.shelf.load import system_of
 from racs_bif.verbs.orbit_ends import settle
 from racs_bif.verbs.orbit_start import Beginning
 from racs_bif.verbs.orbits import follow_orbits
+from racs_bif.verbs.rebuild import rebuild
 
 SPAN = (-1.0, 2.0)
 W = 1.7
@@ -291,3 +294,35 @@ def test_the_homoclinic_limit_of_lorenz():
     assert end.saddle_quantity == pytest.approx(7.12995 - 8.0 / 3.0, abs=1e-3)
     assert end.growth_ratio == pytest.approx(1.0, abs=0.01)
     np.testing.assert_allclose(end.saddles, 0.0, atol=1e-9)
+
+
+def test_orbits_of_a_file_are_not_left_at_a_branch_point(cycles, model, tmp_path):
+    labels = ["BPC" if label == "UZ" else label for label in cycles.labels]
+    crossing = replace(cycles["UZ1"], label="BPC", name="BPC1")
+    branch = replace(
+        cycles,
+        labels=labels,
+        special=(crossing,),
+        profiles={"BPC1": cycles.profiles["UZ1"]},
+    )
+    loaded = rb.load(rb.save(branch, tmp_path / "po.nc"))
+    with pytest.raises(UsageError, match="BPC1 was loaded from a file and is a branch point"):
+        rb.continue_orbits(loaded["BPC1"], (0.2, 0.8), model=model)
+
+
+def test_a_branch_is_rebuilt_from_what_made_it(equilibria, cycles):
+    assert rebuild(equilibria).settings == equilibria["H1"].origin.system.settings
+    parted = replace(equilibria, origin=None)
+    assert rebuild(parted).name == "joined"
+    renamed = replace(equilibria, state_names=("x", "z"))
+    with pytest.raises(UsageError, match=r"the states of EQ1 are not those of realisation 'none'"):
+        rebuild(renamed)
+
+
+def test_an_unknown_realisation_is_named(tmp_path):
+    branch = rb.continue_equilibria(rb.load_model("racs"), "u", (5.0, 6.0))
+    how = replace(branch.system.realisation, name="diffusiv")
+    with pytest.raises(
+        UsageError, match="unknown realisation 'diffusiv'; did you mean 'diffusive'"
+    ):
+        rebuild(replace(branch, origin=None, system=replace(branch.system, realisation=how)))

@@ -159,3 +159,47 @@ def test_no_equilibrium_to_start_from():
     model = rb.model_from_strings("none", {"x": "1 + x**2"}, parameters={})
     with pytest.raises(ConvergenceError, match="do not change with the states at the guess"):
         rb.simulate(model, 1.0, history="equilibrium")
+
+
+def stopping(after):
+    """Return a report of progress that interrupts when it has been called so often."""
+    calls = []
+
+    def report(time):
+        calls.append(time)
+        if len(calls) > after:
+            raise KeyboardInterrupt
+
+    return report
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"step": 0.004}, {}, {"operator": "realised"}],
+    ids=["step", "tolerance", "realised"],
+)
+def test_an_interruption_of_the_first_run_keeps_it_without_an_error(options):
+    done = rb.simulate(relaxation(), 2.0, initial={"x": 1.0}, progress=stopping(1), **options)
+    assert "nterrupted" in done.stopped
+    assert done.early
+    assert 0.0 <= done.times[-1] < 2.0
+    assert np.isnan(done.errors["x"])
+    exact = mittag_leffler(0.5, 1.0, -np.sqrt(done.times))
+    late = done.times > 0.2
+    np.testing.assert_allclose(done.column("x")[late], exact[late], atol=1e-3)
+
+
+def test_the_finest_run_is_taken_without_a_word_where_it_is_good_enough(monkeypatch):
+    from racs_bif.simulation import runs
+
+    monkeypatch.setattr(runs, "_MOST", 300)
+    done = rb.simulate(relaxation(), 2.0, initial={"x": 1.0}, tolerance=0.01)
+    assert len(done) == 257
+    assert done.stopped == "The duration is over."
+    assert 0.0 < done.errors["x"] < 0.01
+
+
+def test_an_input_is_a_function_or_a_table():
+    model = rb.model_from_strings("m", {"x": "f - x"}, parameters={"f": 0.0})
+    with pytest.raises(UsageError, match=r"'f' is 2\.0; give a function of time, or a dict of the"):
+        rb.simulate(model, 1.0, inputs={"f": 2.0})

@@ -75,3 +75,11 @@ def test_realisations_verb(capsys, tmp_path):
     assert {row["name"] for row in summary["realisations"]} >= {"fitted", "oustaloup", "aaa"}
     assert (tmp_path / "realisations.svg").stat().st_size > 0
     assert main(["realisations", "--along", "u", "5", "x", "--out", str(tmp_path)]) == 2
+
+
+def test_a_span_without_a_hopf_point_has_nothing_to_compare():
+    system = rb.load_model("racs")
+    with pytest.raises(UsageError, match=r"no Hopf point for u in 5 \.\. 6; give another span"):
+        compare_realisations(system, along=("u", 5.0, 6.0))
+    kept = rb.load_model("racs", realisation="fitted")
+    assert fitted(kept, "u", (5.0, 6.0)) is kept

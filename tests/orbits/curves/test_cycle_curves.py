@@ -154,3 +154,25 @@ def test_no_point_of_codimension_two_is_found_twice(feedback):
 def test_a_curve_of_another_kind_is_refused(feedback):
     with pytest.raises(UsageError, match="ns curve cannot start at PD1"):
         rb.continue_curve(feedback["PD1"], ("alpha", "beta"), kind="ns")
+
+
+def test_an_orbit_of_another_method_is_collocated(langford):
+    point = langford["NS1"]
+    span = (point.parameters["alpha"], point.parameters["alpha"] + 0.05)
+    other = rb.continue_orbits(point, span, method="shooting").special[-1]
+    problem, z = as_collocated(other.origin.problem, other.origin.raw.z, COARSE)
+    assert np.abs(problem.residual(z)).max() < 1e-8
+    assert problem.period(z) == pytest.approx(other.period, rel=1e-5)
+    assert problem.path.names == ("alpha",)
+    again = as_collocated(problem, z)
+    assert again[0] is problem
+    assert again[1] is z
+
+
+def test_a_cycle_of_a_curve_is_an_orbit_in_its_first_parameter(start):
+    curves, z = start
+    problem, orbit = as_collocated(curves, z)
+    assert np.abs(problem.residual(orbit)).max() < 1e-6
+    assert problem.period(orbit) == curves.period(z)
+    assert orbit[-1] == z[-1]
+    assert len(problem.path.names) == 1
