@@ -74,9 +74,9 @@ def solve_realised_hopf(
         drift = -np.linalg.solve(A, system.field.f_p(x, p, dp))
         moved = system.field.f_xx(x, p, right, drift) + system.field.f_xp(x, p, right, dp)
         slope = complex(np.vdot(left, moved))
-        step = -mu.real / slope.real
+        step = -mu.real / slope.real if slope.real else np.inf
         # a parameter may be zero at the point: it counts by what moves the eigenvalue too
-        size = abs(value) + abs(mu / slope)
+        size = abs(value) + (abs(mu / slope) if slope else np.inf)
         if abs(step) < _TOLERANCE * size or (abs(step) >= best and best < 1e-9 * size):
             return RealisedHopf(x, value, mu.imag, slope)
         if not np.isfinite(step) or mu.imag <= 0.0:

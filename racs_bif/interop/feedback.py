@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from graphlib import CycleError, TopologicalSorter
 from typing import TYPE_CHECKING, TypeAlias
 
 from racs_bif.errors import ModelError, nearest
@@ -107,11 +108,31 @@ def with_feedback(
         equations=equations,
         elements=elements,
         outputs={k: _swapped(e, swap) for k, e in outputs.items()},
-        terms={k: _swapped(e, swap) for k, e in base.terms.items()},
+        terms=_in_order({k: _swapped(e, swap) for k, e in base.terms.items()}),
         mass=None if base.mass is None else base.mass.applyfunc(lambda e: _swapped(e, swap)),
         parameters=(*there, *(Parameter(k, float(v)) for k, v in table.items())),
         inputs=(*(i for i in base.inputs if i not in gone), *inputs),
     )
+
+
+def _in_order(terms: dict[str, sp.Expr]) -> dict[str, sp.Expr]:
+    """Return terms so that each uses earlier ones only.
+
+    Raises
+    ------
+    ModelError
+        If the law made them depend on one another.
+    """
+    used = {k: {symbol.name for symbol in e.free_symbols} for k, e in terms.items()}
+    before = {k: [name for name in terms if name in used[k]] for k in terms}
+    try:
+        return {k: terms[k] for k in TopologicalSorter(before).static_order()}
+    except CycleError as error:
+        loop = " -> ".join(error.args[1])
+        msg = (
+            f"the feedback closes an algebraic loop: {loop}; feed back a state, or an output of it"
+        )
+        raise ModelError(msg) from None
 
 
 def symbolic(model: Model | System) -> Model:

@@ -44,6 +44,9 @@ _LIMITS: Final = (1e-7, 1e6)
 _BESIDE: Final = 1e-3
 """Length of the branch, whose whole span counts 1, that is too near a special point to check."""
 _STATIC: Final = ("LP", "BP")
+_UNEXPLAINED: Final = "unexplained"
+_AROUND: Final = 4
+"""Points on either side of these that are looked at."""
 _MARGIN: Final = 2.0
 """How far within its band a realisation is good, as a factor."""
 
@@ -145,6 +148,8 @@ def _contradicted(
         if exact is not None and exact != unstable:
             told = f"at {problem.parameter} = {place.value:.6g} there are {exact} exact"
             return (low / _FURTHER, high), f"{told} unstable roots, not {unstable}"
+    if _UNEXPLAINED in found.message:
+        return (low / _FURTHER, high), "the changes of stability are not all explained"
     return None
 
 
@@ -179,6 +184,10 @@ def _places(
         yield next(_as_places(system, problem, [point])), point.unstable
     special = {point.index for point in found.special}
     for k in (point.index for point in found.special if point.label in _STATIC):
+        around = found.points[max(k - _AROUND, 0) : k + _AROUND + 1]
+        for point, near in zip(around, _as_places(system, problem, around), strict=True):
+            if not point.label:
+                yield near, point.unstable
         for j in (k - 1, k + 1):
             if 0 <= k < len(found.points) and 0 <= j < len(found.points) and j not in special:
                 start, end = _as_places(system, problem, (found.points[k], found.points[j]))

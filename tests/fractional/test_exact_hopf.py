@@ -232,3 +232,11 @@ def test_a_real_eigenvalue_is_no_realised_hopf_point(system_of):
     )
     with pytest.raises(ConvergenceError, match="no Hopf point of the realised system near mu = 1"):
         solve_realised_hopf(system, system.path("mu"), np.zeros(2), 1.0, 0.0)
+
+
+def test_a_parameter_that_moves_no_eigenvalue_has_no_hopf_point(system_of):
+    system = system_of(
+        {"x": "mu - 3*x", "y": "x - y"}, parameters={"mu": 1.0}, guess={"x": 0.3, "y": 0.3}
+    )
+    with pytest.raises(ConvergenceError, match="no Hopf point of the realised system near mu = 1"):
+        solve_realised_hopf(system, system.path("mu"), np.array([0.3, 0.3]), 1.0, 0.0)

@@ -121,3 +121,20 @@ def test_terms_are_looked_into_for_what_closes_a_loop():
     used = {str(symbol) for e in held.terms.values() for symbol in e.free_symbols}
     assert {"x", "y"} <= used
     assert "T" not in used
+
+
+def test_terms_are_put_in_an_order_in_which_each_is_known():
+    """The output fed back uses a later term than the one that the law goes into."""
+
+    def rates(x, p):
+        push = sum(math.sin(k * p.T) for k in range(1, 30))
+        pull = sum(math.cos(k * x[0]) for k in range(1, 30))
+        return [x[1] + 2 * pull, push * x[1] - x[0]]
+
+    model = rb.model_from_function("long", rates, states="x y", parameters={"T": 0.0})
+    pull = model.equations["x"]
+    fed = system_of(rb.with_feedback(replace(model, outputs={"pull": pull}), {"T": "pull"}))
+    x = np.array([0.3, 0.7])
+    rate = x[1] + 2 * sum(math.cos(k * x[0]) for k in range(1, 30))
+    push = sum(math.sin(k * rate) for k in range(1, 30))
+    np.testing.assert_allclose(fed.field.f(x, fed.values), [rate, push * x[1] - x[0]], rtol=1e-9)
