@@ -133,9 +133,9 @@ def run(arguments: Namespace) -> int:
 
     done = Run()
     if arguments.orbits != "none":
-        done.journal = Journal(arguments.out, arguments, system)
+        done.journal = Journal(arguments.out, arguments)
         if arguments.resume:
-            done.journal.take_up()
+            done.journal.take_up(system)
     try:
         _compute(arguments, system, done)
     except Exception as error:  # raised again when what is there has been saved
@@ -295,7 +295,8 @@ def _close(done: Run, arguments: Namespace) -> int:
     from racs_bif.cli.terminal import warn
 
     if done.interrupted:
-        goes_on = "" if done.journal is None else "; the same command with --resume goes on"
+        kept = done.journal is not None and done.journal.steps
+        goes_on = "; the same command with --resume goes on" if kept else ""
         done.troubles.insert(0, f"interrupted by the user{goes_on}")
     if not done.troubles:
         return 0

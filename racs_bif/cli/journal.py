@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from racs_bif.fractional.system import System
     from racs_bif.results.branch import Branch
+    from racs_bif.results.provenance import SystemInfo
 
 UNFINISHED: Final = ("unfinished.nc", "unfinished.json")
 """The branches that are done, and the steps that they came from. The latter is written last."""
@@ -55,26 +56,25 @@ class Journal:
         Where.
     arguments : Namespace
         The run's arguments.
-    system : System
-        What it follows.
     """
 
-    def __init__(self, folder: Path, arguments: Namespace, system: System) -> None:
-        from racs_bif.results.provenance import describe
-
+    def __init__(self, folder: Path, arguments: Namespace) -> None:
         self.branches_file, self.steps_file = (folder / name for name in UNFINISHED)
         self.told = {
             name: repr(value)
             for name, value in vars(arguments).items()
             if name not in _OF_NO_MATTER
         }
-        info = describe(system)
-        self.told |= {"equations": info.equations, "version": info.version}
         self.steps: list[Step] = []
         self._earlier: dict[str, tuple[Step, tuple[Branch, ...]]] = {}
 
-    def take_up(self) -> None:
+    def take_up(self, system: System) -> None:
         """Read what an earlier run has finished.
+
+        Parameters
+        ----------
+        system : System
+            What this run follows.
 
         Raises
         ------
@@ -85,12 +85,14 @@ class Journal:
         """
         from racs_bif.results.diagram import Diagram
         from racs_bif.results.files import load
+        from racs_bif.results.provenance import describe
 
         if not self.steps_file.exists():
             msg = f"{self.steps_file.parent} holds no unfinished run to go on with"
             raise UsageError(f"{msg}; leave out --resume")
         told, steps = self._read()
-        different = sorted(k for k in {*told, *self.told} if told.get(k) != self.told.get(k))
+        mine = self.told | _origin(describe(system))
+        different = sorted(k for k in {*told, *mine} if told.get(k) != mine.get(k))
         if different:
             msg = f"the unfinished run in {self.steps_file.parent} differs in"
             raise UsageError(
@@ -100,10 +102,10 @@ class Journal:
         branches = found.branches if isinstance(found, Diagram) else ()
         first = 0
         for step in steps:
-            mine = tuple(branches[first : first + step.branches])
-            if len(mine) != step.branches:
+            added = tuple(branches[first : first + step.branches])
+            if len(added) != step.branches:
                 raise FileError(self._spoilt("it lacks branches"))
-            self._earlier[step.name] = step, mine
+            self._earlier[step.name] = step, added
             first += step.branches
 
     def _read(self) -> tuple[dict[str, str], list[Step]]:
@@ -139,7 +141,8 @@ class Journal:
         self._earlier.pop(step.name, None)
         rest = list(self._earlier.values())  # what this run has not come to yet
         steps = [*self.steps, *(step for step, _ in rest)]
-        text = {"format": _FORMAT, "run": self.told, "steps": [asdict(s) for s in steps]}
+        told = self.told | _origin(branches[0].system)
+        text = {"format": _FORMAT, "run": told, "steps": [asdict(s) for s in steps]}
         with suppress(FileError, OSError):
             self.branches_file.parent.mkdir(parents=True, exist_ok=True)
             save(Diagram(*branches, *(b for _, mine in rest for b in mine)), self.branches_file)
@@ -150,3 +153,7 @@ class Journal:
         for path in (self.steps_file, self.branches_file):
             with suppress(OSError):
                 path.unlink()
+
+
+def _origin(info: SystemInfo) -> dict[str, str]:
+    return {"equations": info.equations, "version": info.version}
