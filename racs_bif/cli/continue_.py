@@ -165,7 +165,7 @@ def run(arguments: Namespace) -> int:
 def _check_names(arguments: Namespace, system: System) -> None:
     """Refuse what would be found out only after computing."""
     if arguments.resume and arguments.orbits == "none":
-        msg = "--resume goes on with branches of orbits; leave it out beside --orbits none"
+        msg = f"--orbits {arguments.orbits} leaves nothing to go on with; leave out --resume"
         raise UsageError(msg)
     if arguments.parameter in dict(arguments.values):
         name = arguments.parameter

@@ -188,4 +188,6 @@ def test_there_is_nothing_to_resume_without_orbits(model, capsys, out):
     line = _command(model, out, "--resume")
     line[line.index("collocation")] = "none"
     assert main(line) == 2
-    assert "leave it out beside --orbits none" in capsys.readouterr().err
+    assert (
+        "--orbits none leaves nothing to go on with; leave out --resume" in capsys.readouterr().err
+    )
