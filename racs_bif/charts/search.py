@@ -141,8 +141,8 @@ def _trace_all(
 
     Counts of different equilibria may differ: edges between such are `_trace_folds`'s.
     """
-    apart = _tear(found, edges)
-    hopeless: set[EdgeKey | int] = {*apart}
+    apart = set[EdgeKey | int](_tear(found, edges))
+    hopeless = set(apart)
     while True:
         new = False
         for key, edge in _all_edges(found, edges):

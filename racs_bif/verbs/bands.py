@@ -43,8 +43,8 @@ _LIMITS: Final = (1e-7, 1e6)
 """Beyond these multiples of the model's own band none is tried."""
 _BESIDE: Final = 1e-3
 """Length of the branch, whose whole span counts 1, that is too near a special point to check."""
-_STATIC: Final = ("LP", "BP")
 _UNEXPLAINED: Final = "unexplained"
+_STATIC: Final = ("LP", "BP")
 _AROUND: Final = 4
 """Points on either side of these that are looked at."""
 _MARGIN: Final = 2.0
