@@ -114,6 +114,8 @@ class Trace:
         Why it ended at its first point; None where that is the start.
     message : str
         What else there is to know, one sentence a line; empty when all went well.
+    unexplained : list of (float, float)
+        Intervals of the parameter in which no special point explains how the spectrum changes.
     """
 
     points: list[Point]
@@ -121,6 +123,7 @@ class Trace:
     stopped: Stopped
     stopped_backward: Stopped | None = None
     message: str = ""
+    unexplained: list[tuple[float, float]] = field(default_factory=list)
 
     def __getitem__(self, name: str) -> SpecialPoint:
         """Return the special point of this name, such as ``"H1"``.

@@ -223,4 +223,6 @@ def _assemble(walks: list[_Walk], notes: list[str]) -> Trace:
             event.index, event.tangent = index, point.tangent
             special.append(event)
     message = "\n".join(filter(None, [*notes, *(walk.message for walk in walks)]))
-    return Trace([point for point, _ in nodes], special, stopped, stopped_backward, message)
+    points = [point for point, _ in nodes]
+    unexplained = [interval for walk in walks for interval in walk.watch.unexplained]
+    return Trace(points, special, stopped, stopped_backward, message, unexplained)

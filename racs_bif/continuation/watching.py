@@ -74,6 +74,8 @@ class Watch:
         Which are zero, but for rounding, at the start.
     divided : bool
         Whether the last segment had to be divided to explain its spectrum.
+    unexplained : list of (float, float)
+        Intervals of the parameter in which a change of the spectrum is not explained.
     """
 
     def __init__(
@@ -88,7 +90,6 @@ class Watch:
         self._locator = Locator(builder, scaling, settings, notes)
         self._notes = notes
         self._checked = any(detector.crossings for detector in builder.detectors)
-        self._mismatches = 0
         self._values = builder.values(start)
         self._places = range(len(self._values))
         self._wanted = [
@@ -103,6 +104,7 @@ class Watch:
         self.signs = [0] * len(self._values)
         self.doubtful = [True] * len(self._values)
         self.divided = False
+        self.unexplained: list[tuple[float, float]] = []
 
     def feed(self, a: Point, b: Point, scaling: Scaling) -> None:
         """Take in the step from a, the last point fed, to b, made in the norm `scaling`."""
@@ -305,7 +307,7 @@ class Watch:
         events.sort(key=lambda event: event.at)
         nodes: list[Node] = [(event.point, event.special) for event in events]
         at_start = a.arclength == self.nodes[0][0].arclength
-        unchecked = not self._checked or self._mismatches >= _MOST_UNEXPLAINED
+        unchecked = not self._checked or len(self.unexplained) >= _MOST_UNEXPLAINED
         unchecked = unchecked or self._critical_end
         if unchecked or (at_start and self._critical_start()):
             return nodes
@@ -321,7 +323,7 @@ class Watch:
             return [*left, (middle, None), *self._resolve(middle, b, values, after)]
         # At the start itself an eigenvalue may be on the axis, within the floor.
         if reason and not at_start:
-            self._mismatches += 1
+            self.unexplained.append((a.parameter, b.parameter))
             self._notes.append(
                 f"unexplained between {self._problem.parameter} = {a.parameter:.10g} and "
                 f"{b.parameter:.10g}: {reason}"

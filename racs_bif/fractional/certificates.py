@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 CROSSINGS: Final = {"H": (2,), "LP": (1,), "BP": (0, 1)}
 """By how many the number of unstable roots may change at a special point, up or down."""
+ROUNDING: Final = 1e-10
+"""Relative difference of the parameter from a fold that rounding makes: there equilibria are known
+to half the digits only."""
 _LEAST: Final = 1e-3
 _NEAR: Final = 0.05
 _TINY: Final = 1e-6  # states all smaller than this are compared with it

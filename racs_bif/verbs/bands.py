@@ -17,7 +17,7 @@ import numpy as np
 
 from racs_bif.errors import ConvergenceError, ParameterError
 from racs_bif.fractional.argument import count_unstable
-from racs_bif.fractional.certificates import Place, beside
+from racs_bif.fractional.certificates import ROUNDING, Place, beside
 from racs_bif.fractional.realisations import choose_realisation
 from racs_bif.units import after, frequency_unit
 from racs_bif.verbs.assemble import interrupted
@@ -43,7 +43,6 @@ _LIMITS: Final = (1e-7, 1e6)
 """Beyond these multiples of the model's own band none is tried."""
 _BESIDE: Final = 1e-3
 """Length of the branch, whose whole span counts 1, that is too near a special point to check."""
-_UNEXPLAINED: Final = "unexplained"
 _STATIC: Final = ("LP", "BP")
 _AROUND: Final = 4
 """Points on either side of these that are looked at."""
@@ -144,13 +143,21 @@ def _contradicted(
 ) -> tuple[Band, str] | None:
     low, high = system.settings.band
     for place, unstable in _places(system, problem, found):
+        if _at_fold(found, place.value):
+            continue
         exact = _exact_count(system, problem, place)
         if exact is not None and exact != unstable:
             told = f"at {problem.parameter} = {place.value:.6g} there are {exact} exact"
             return (low / _FURTHER, high), f"{told} unstable roots, not {unstable}"
-    if _UNEXPLAINED in found.message:
+    if not all(_at_fold(found, *interval) for interval in found.unexplained):
         return (low / _FURTHER, high), "the changes of stability are not all explained"
     return None
+
+
+def _at_fold(found: Trace, *values: float) -> bool:
+    """Say whether values of the parameter are a fold's but for rounding."""
+    folds = [float(point.z[-1]) for point in found.special if point.label in _STATIC]
+    return any(max(abs(value - fold) for value in values) <= ROUNDING * abs(fold) for fold in folds)
 
 
 def contradicted(system: System, problem: EquilibriumProblem, points: Sequence[Point]) -> Flags:

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import groupby, pairwise
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.certificates import CROSSINGS, Place, beside, changes, exact_count, near
+from racs_bif.fractional.certificates import (
+    CROSSINGS,
+    ROUNDING,
+    Place,
+    beside,
+    changes,
+    exact_count,
+    near,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from racs_bif.fractional.certificates import Resolved
     from racs_bif.results.branch import Branch
     from racs_bif.results.certificate import Check
     from racs_bif.results.special import SpecialPoint
     from racs_bif.verbs.subject import Subject
-
-_ROUNDING: Final = 1e-10
 
 
 @dataclass(frozen=True)
@@ -87,13 +93,10 @@ def _judge(subject: Subject, k: int, resolved: Mapping[str, Resolved]) -> _Verdi
 
 
 def _between(subject: Subject, place: Place, resolved: Mapping[str, Resolved]) -> bool:
-    """Say whether a place lies between a special point as reported and the exact one.
-
-    At a fold equilibria are known to half the digits only.
-    """
+    """Say whether a place lies between a special point as reported and the exact one."""
     for name, exact in resolved.items():
         ends = subject.branch[name].parameters[subject.parameter], exact.value
-        rounding = _ROUNDING * max(map(abs, ends))
+        rounding = ROUNDING * max(map(abs, ends))
         inside = min(ends) - rounding <= place.value <= max(ends) + rounding
         if inside and near(place.X, exact.X):
             return True
@@ -116,7 +119,11 @@ def _unexplained(
 ) -> Iterator[Check]:
     """Yield a failed check wherever the exact count changes by what no special point explains."""
     branch = subject.branch
-    for a, b in pairwise(verdicts):
+    folds = [float(branch.parameter[p.index]) for p in there if p.label != "H"]
+    told_apart = [
+        v for v in verdicts if not (v.shifted and _rounded(float(branch.parameter[v.k]), folds))
+    ]
+    for a, b in pairwise(told_apart):
         if a.count is None or b.count is None:
             continue
         points = [p for p in there if a.k < p.index < b.k]
@@ -131,6 +138,10 @@ def _unexplained(
         told = f"as {names} does not explain" if points else "where no special point is reported"
         finding = f"{where}: {counts}, {told}"
         yield subject.check(branch.name, "complete", interval, finding)
+
+
+def _rounded(value: float, folds: Iterable[float]) -> bool:
+    return any(abs(value - fold) <= ROUNDING * abs(fold) for fold in folds)
 
 
 def _sides(

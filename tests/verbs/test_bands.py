@@ -98,6 +98,22 @@ def test_slow_hopf_points_of_vehicles_are_found(index, span, u, omega):
     assert rb.certify(branch, "complete").holds
 
 
+def test_what_rounding_hides_at_a_fold_is_no_reason_to_widen_for_ever():
+    """Of this vehicle a Hopf point of 6e-4 rad/s is 3e-10 beside a fold.
+
+    The realisation that finds it has two more unstable eigenvalues within 1e-11 of the fold, where
+    an equilibrium is known to half its digits.
+    """
+    branch = rb.continue_equilibria(_vehicle(640), "u", (9.7, 10.0))
+    low, _ = branch.system.realisation.band
+    hopf = next(p for p in branch.special if p.label == "H" and p.omega < 0.1)
+    assert not branch.early
+    assert 1e-9 < low < 1e-5
+    assert hopf.exact.parameters["u"] == pytest.approx(9.920403966938846, rel=1e-12)
+    assert hopf.omega == pytest.approx(hopf.exact.omega, rel=1e-2)
+    assert rb.certify(branch, "complete").holds
+
+
 def test_the_vehicles_own_band_will_do():
     branch = rb.continue_equilibria(rb.load_model("racs"), "u", (5, 30))
     assert branch.system.realisation.band == (0.1, 50.0)
