@@ -16,7 +16,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from racs_bif.charts.sheet import Laws
+    from racs_bif.charts.members import Laws
     from racs_bif.fractional.laws import Complex
     from racs_bif.symbolic.field import Array
 

@@ -1,7 +1,7 @@
 """Whether the band of a realisation holds what decides stability, and a wider one where not.
 
 A realisation is good on its band; roots slower or faster than that are its own. The argument
-principle counts the exact unstable roots between special points, and right beside folds. Where the
+principle counts the exact unstable roots at all points together, and right beside folds. Where the
 realisation has other numbers there, or a Hopf point beyond its band, branches are followed again on
 a wider one, unless the user chose the band.
 """
@@ -15,9 +15,11 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 import numpy as np
 
+from racs_bif.charts.along import count_along
+from racs_bif.charts.counting import UNKNOWN
 from racs_bif.errors import ConvergenceError, ParameterError
 from racs_bif.fractional.argument import count_unstable
-from racs_bif.fractional.certificates import ROUNDING, Place, beside
+from racs_bif.fractional.certificates import ROUNDING, Place, beside, near, resolve
 from racs_bif.fractional.realisations import choose_realisation
 from racs_bif.units import after, frequency_unit
 from racs_bif.verbs.assemble import interrupted
@@ -146,9 +148,10 @@ def _contradicted(
         if _at_fold(found, place.value):
             continue
         exact = _exact_count(system, problem, place)
-        if exact is not None and exact != unstable:
-            told = f"at {problem.parameter} = {place.value:.6g} there are {exact} exact"
-            return (low / _FURTHER, high), f"{told} unstable roots, not {unstable}"
+        if exact is None or exact == unstable or _shifted(system, problem, found, place):
+            continue
+        told = f"at {problem.parameter} = {place.value:.6g} there are {exact} exact"
+        return (low / _FURTHER, high), f"{told} unstable roots, not {unstable}"
     if not all(_at_fold(found, *interval) for interval in found.unexplained):
         return (low / _FURTHER, high), "the changes of stability are not all explained"
     return None
@@ -158,6 +161,20 @@ def _at_fold(found: Trace, *values: float) -> bool:
     """Say whether values of the parameter are a fold's but for rounding."""
     folds = [float(point.z[-1]) for point in found.special if point.label in _STATIC]
     return any(max(abs(value - fold) for value in values) <= ROUNDING * abs(fold) for fold in folds)
+
+
+def _shifted(system: System, problem: EquilibriumProblem, found: Trace, place: Place) -> bool:
+    """Say whether a place lies between a Hopf point of the realisation and the exact one."""
+    for point in found.special:
+        if point.label != "H" or not point.data.get("omega"):
+            continue
+        reported = next(_as_places(system, problem, [found.points[point.index]]))
+        with suppress(ConvergenceError):
+            exact = resolve(system.exact, problem.path, reported, float(point.data["omega"]))
+            ends = sorted((reported.value, exact.value))
+            if ends[0] <= place.value <= ends[1] and near(place.X, exact.X):
+                return True
+    return False
 
 
 def contradicted(system: System, problem: EquilibriumProblem, points: Sequence[Point]) -> Flags:
@@ -182,45 +199,68 @@ def _as_places(
 def _places(
     system: System, problem: EquilibriumProblem, found: Trace
 ) -> Iterator[tuple[Place, int]]:
-    """Yield places where roots are counted, and the numbers of unstable eigenvalues there.
+    """Yield places where roots are to be counted, and the numbers of unstable eigenvalues there.
 
-    They are points of the branch and, as near as `certify` counts, places right beside folds and
-    branch points: roots there may be slower than the band.
+    They are points of the branch where not all counted together have that number already, and, as
+    near as `certify` counts, places right beside folds and branch points: roots there may be
+    slower than the band.
     """
-    for point in _checked(found):
-        yield next(_as_places(system, problem, [point])), point.unstable
+    points = found.points
+    for k in _doubtful(system, problem, found):
+        yield next(_as_places(system, problem, [points[k]])), points[k].unstable
     special = {point.index for point in found.special}
     for k in (point.index for point in found.special if point.label in _STATIC):
-        around = found.points[max(k - _AROUND, 0) : k + _AROUND + 1]
-        for point, near in zip(around, _as_places(system, problem, around), strict=True):
-            if not point.label:
-                yield near, point.unstable
         for j in (k - 1, k + 1):
-            if 0 <= k < len(found.points) and 0 <= j < len(found.points) and j not in special:
-                start, end = _as_places(system, problem, (found.points[k], found.points[j]))
+            if 0 <= k < len(points) and 0 <= j < len(points) and j not in special:
+                start, end = _as_places(system, problem, (points[k], points[j]))
                 with suppress(ConvergenceError):
                     beyond = beside(system.exact, problem.path, start, end)
-                    yield beyond, found.points[j].unstable
+                    yield beyond, points[j].unstable
 
 
-def _checked(found: Trace) -> Iterator[Point]:
-    """Yield some points between any two special points, apart from these.
+def _doubtful(system: System, problem: EquilibriumProblem, found: Trace) -> list[int]:
+    """Return at which points the exact roots, counted together, have another number.
 
-    They are the first, the middle and the last one, the one at which a pair comes nearest to the
-    imaginary axis for its frequency, and the one with the slowest eigenvalue.
+    Of points that could not be counted some are chosen.
     """
+    places = list(_as_places(system, problem, found.points))
+    P = np.array([problem.path.vector(place.value) for place in places]).T
+    counts = count_along(system, np.array([place.X for place in places]).T, P)
+    compared, chosen = set[int](), set[int]()
+    for piece in _pieces(found):
+        compared.update(piece)
+        chosen.update(_chosen(found, piece))
+    for k in (point.index for point in found.special if point.label in _STATIC):
+        around = range(max(k - _AROUND, 0), min(k + _AROUND + 1, len(places)))
+        chosen.update(j for j in around if not found.points[j].label)
+    return [
+        k
+        for k in sorted(compared | chosen)
+        if counts[k] != found.points[k].unstable and (counts[k] != UNKNOWN or k in chosen)
+    ]
+
+
+def _pieces(found: Trace) -> Iterator[list[int]]:
+    """Yield the points between any two special points, apart from these."""
     places = sorted({0, *(point.index for point in found.special), len(found.points) - 1})
     for a, b in pairwise(places):
         start, end = found.points[a].arclength, found.points[b].arclength
-        piece = [
-            point
-            for point in found.points[a : b + 1]
-            if min(abs(point.arclength - start), abs(point.arclength - end)) > _BESIDE
-        ]
+        away = (min(abs(p.arclength - start), abs(p.arclength - end)) for p in found.points)
+        piece = [k for k, distance in enumerate(away) if a <= k <= b and distance > _BESIDE]
         if piece:
-            pair = int(np.argmin([_nearest_pair(point.spectrum) for point in piece]))
-            slow = int(np.argmin([np.abs(point.spectrum).min(initial=np.inf) for point in piece]))
-            yield from (piece[k] for k in sorted({0, len(piece) // 2, len(piece) - 1, pair, slow}))
+            yield piece
+
+
+def _chosen(found: Trace, piece: list[int]) -> set[int]:
+    """Return the first, the middle and the last point of a piece, and two that are near to cross.
+
+    At one a pair comes nearest to the imaginary axis for its frequency, the other has the slowest
+    eigenvalue.
+    """
+    spectra = [found.points[k].spectrum for k in piece]
+    pair = int(np.argmin([_nearest_pair(spectrum) for spectrum in spectra]))
+    slow = int(np.argmin([np.abs(spectrum).min(initial=np.inf) for spectrum in spectra]))
+    return {piece[k] for k in (0, len(piece) // 2, -1, pair, slow)}
 
 
 def _nearest_pair(spectrum: Spectrum) -> float:
