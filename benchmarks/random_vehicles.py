@@ -54,6 +54,8 @@ STARTS: Final = 100
 LIKELY_STATE: Final = (10.0, 2.0, 0.5, 0.1)
 """Deviations of the random states (v, w, delta_c and its rate) that equilibria are looked for from,
 and how many of them."""
+DIFFERENCE: Final = 1e-5
+"""The least share of its terms that a rate is compared with."""
 ON_AXIS: Final = 1e-6
 """By how much, relative, an exact root may differ from i omega of a Hopf curve."""
 PLACES: Final = 4
@@ -234,7 +236,10 @@ def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, s
 
 
 def exact_residual(system: System, profile: Profile) -> float:
-    """Return by how much an orbit misses the exact equations, over its greatest rate.
+    """Return by how much an orbit misses the exact equations, over its greatest rates.
+
+    A rate that is a far smaller difference of terms, as accelerations of slow orbits are of forces,
+    is known by the samples to a share of these terms only.
 
     Samples of one period are Fourier transformed; element k answers ``exp(i omega t)`` by its law
     at ``i omega``. Nothing of the library's orbit methods is used.
@@ -261,7 +266,10 @@ def exact_residual(system: System, profile: Profile) -> float:
         gains = np.array([law.numerator.at_zero / law.denominator.at_zero, *law(rates[1:])])
         w[:, k] = np.fft.irfft(gains * np.fft.rfft(e[:, k]), count)
     miss = slopes - _core(system, y, w, padded)[:, : y.shape[1]]
-    sizes = np.abs(slopes).max(axis=0)
+    jacobian = system.compiled.core_jacobian(np.append(y.mean(axis=0), w.mean(axis=0)), padded)
+    spread = np.ptp(np.hstack([y, w]), axis=0)
+    terms = (np.abs(jacobian) @ spread)[: y.shape[1]]
+    sizes = np.maximum(np.abs(slopes).max(axis=0), DIFFERENCE * terms)
     return float((np.abs(miss).max(axis=0) / sizes).max())
 
 
