@@ -50,18 +50,12 @@ class NeimarkSacker(Detector):
         return _pairs(before.spectrum[1:]) == _pairs(after.spectrum[1:])
 
     def data(self, problem: OrbitProblem, point: Point) -> dict[str, Any] | None:
-        """Return angle, period, multipliers, normal form; None at a neutral saddle of cycles.
-
-        None, too, where the pair cannot be told from a double multiplier 1: an error of the trivial
-        one splits that by its square root.
-        """
+        """Return angle, period, multipliers, normal form; None at a neutral saddle of cycles."""
         products, angles = _real_products(point.spectrum[1:])
         k = int(np.argmin(np.abs(products - 1.0)))
         if abs(products[k] - 1.0) > _NEAR or angles[k] < _REAL or angles[k] > math.pi - _REAL:
             return None
         angle = float(angles[k])
-        if angle**2 <= abs(point.spectrum[0] - 1.0):
-            return None
         form = cycle_normal_form(problem, point, self.label, angle)
         return {**describe(problem, point), "angle": angle, **form}
 

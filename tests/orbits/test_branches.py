@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from racs_bif.continuation import StepSettings, Stopped, trace
-from racs_bif.continuation.points import Point
 from racs_bif.orbits import (
     BranchPointOfCycles,
     FoldOfCycles,
@@ -15,7 +14,6 @@ from racs_bif.orbits import (
     PeriodDoubling,
     from_hopf,
     from_samples,
-    neimark_sacker,
 )
 
 W = 1.7
@@ -180,15 +178,3 @@ def test_two_runs_agree_bit_for_bit(hopf):
     )
     assert len(first) == len(second)
     assert all(np.array_equal(a.z, b.z) for a, b in zip(first, second, strict=True))
-
-
-@pytest.mark.parametrize(("off", "is_told"), [(1e-8, True), (2e-3, False)])
-def test_a_pair_beside_a_wrong_trivial_multiplier_is_no_neimark_sacker(off, is_told, monkeypatch):
-    """A double multiplier 1 whose trivial one is off by 2e-3 looks like a pair at 0.009 rad."""
-    monkeypatch.setattr(neimark_sacker, "describe", lambda *_: {})
-    monkeypatch.setattr(neimark_sacker, "cycle_normal_form", lambda *_: {})
-    pair = np.exp([0.009j, -0.009j])
-    multipliers = np.array([1.0 + off, *pair])
-    point = Point(np.zeros(3), np.zeros(3), multipliers, None, 0, {}, 0.0, 0)
-    told = neimark_sacker.NeimarkSacker().data(None, point)
-    assert (told is not None) == is_told
