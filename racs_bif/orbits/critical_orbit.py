@@ -39,7 +39,7 @@ _STEP: Final = 1e-4
 _FARTHEST: Final = 0.1
 """Farthest that the bifurcation may lie from where the other discretisation found it."""
 _STEPS: Final = 8
-_FOUND: Final = 1e-11
+_FOUND: Final = 1e-10
 _CLOSE: Final = 1e-7
 """Critical exponents times the period that count as zero: reached, and still accepted."""
 
@@ -56,11 +56,14 @@ class CriticalOrbit:
         The critical function.
     parameter : float
         The active parameter.
+    slope : float
+        How the critical exponent times the period changes along the branch.
     """
 
     along: Variational
     mode: Mode
     parameter: float
+    slope: float
 
 
 def finer(curve: Piecewise) -> Piecewise:
@@ -137,8 +140,17 @@ class GaussOrbits:
         return self.problem.join(nodes, self.problem.period(self.guess), 0.0)
 
 
-def critical_orbit(orbits: GaussOrbits, form: CriticalForm) -> CriticalOrbit:
+def critical_orbit(orbits: GaussOrbits, form: CriticalForm, slope: float = 0.0) -> CriticalOrbit:
     """Solve for the orbit at which the critical exponent of a normal form vanishes.
+
+    Parameters
+    ----------
+    orbits : GaussOrbits
+        The orbits around.
+    form : CriticalForm
+        The normal form.
+    slope : float
+        `CriticalOrbit.slope` where it is known from another mesh.
 
     Raises
     ------
@@ -160,16 +172,21 @@ def critical_orbit(orbits: GaussOrbits, form: CriticalForm) -> CriticalOrbit:
         near = form.mode(along, near)
         return z, along, near
 
-    z, along, mode = _root(at)
-    return CriticalOrbit(along, mode, float(z[-1]))
+    (z, along, mode), slope = _root(at, slope)
+    return CriticalOrbit(along, mode, float(z[-1]), slope)
 
 
 def _root(
-    at: Callable[[float], tuple[Array, Variational, Mode]],
-) -> tuple[Array, Variational, Mode]:
-    """Find where the critical exponent vanishes by the secant method; return the best."""
+    at: Callable[[float], tuple[Array, Variational, Mode]], slope: float
+) -> tuple[tuple[Array, Variational, Mode], float]:
+    """Find where the critical exponent vanishes by the secant method; return the best, the slope.
+
+    Without a slope the first step is a short one.
+    """
     before, found = 0.0, at(0.0)
-    here, best, size = _STEP, found, _growth(found)
+    best, size = found, _growth(found)
+    known = slope and abs(size) < _FARTHEST * abs(slope)
+    here = -size / slope if known else _STEP
     last = size
     for _ in range(_STEPS):
         if abs(size) < _FOUND:
@@ -182,12 +199,13 @@ def _root(
             break
         if value == last:
             break
-        before, here, last = here, here - value * (here - before) / (value - last), value
+        slope = (value - last) / (here - before)
+        before, here, last = here, here - value / slope, value
         if not abs(here) < _FARTHEST:
             raise ConvergenceError("the bifurcation is not found again close by on the Gauss mesh")
     if not abs(size) < _CLOSE:
         raise ConvergenceError(f"the critical exponent stays at {size:.1e} over the period")
-    return best
+    return best, slope
 
 
 def _growth(found: tuple[Array, Variational, Mode]) -> float:

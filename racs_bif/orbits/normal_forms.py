@@ -92,15 +92,16 @@ def _coefficient(
     curve = sampled(problem, z, orbit_mesh(problem, z))
     period, parameter = problem.period(z), float(z[-1])
     before: Coefficient | None = None
+    slope = 0.0
     for _ in range(_MESHES):
-        orbit = critical_orbit(GaussOrbits(field, path, curve, period, parameter), form)
+        orbit = critical_orbit(GaussOrbits(field, path, curve, period, parameter), form, slope)
         found = form.coefficient(orbit.along, orbit.mode)
         if before is not None:
             error = abs(found.value - before.value) + _ROUNDING * found.size
             if error <= _SURE * abs(found.value.real):
                 break
         before, curve = found, finer(orbit.along.curve)
-        period, parameter = orbit.along.period, orbit.parameter
+        period, parameter, slope = orbit.along.period, orbit.parameter, orbit.slope
     return found, float(error)
 
 
