@@ -23,7 +23,8 @@ from racs_bif.shelf.load import system_of
 from racs_bif.symbolic.model import Model, find_parameter
 from racs_bif.units import after, frequency_unit
 from racs_bif.verbs import assemble
-from racs_bif.verbs.bands import Remark, contradicted, on_a_band_that_holds
+from racs_bif.verbs.bands import Remark, on_a_band_that_holds
+from racs_bif.verbs.contradictions import contradicted
 from racs_bif.verbs.origin import Origin
 
 if TYPE_CHECKING:

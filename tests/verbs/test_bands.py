@@ -114,6 +114,23 @@ def test_what_rounding_hides_at_a_fold_is_no_reason_to_widen_for_ever():
     assert rb.certify(branch, "complete").holds
 
 
+def test_the_order_is_raised_for_a_hopf_point_far_from_the_exact_one():
+    """Two Hopf points of this vehicle nearly meet, and the default order is 1.4 % off."""
+    branch = rb.continue_equilibria(_vehicle(959), "u", (18.0, 23.0))
+    hopf = min((p for p in branch.special if p.label == "H"), key=lambda p: p.exact.parameters["u"])
+    assert "order was raised to 1.5 times its default" in branch.stopped
+    assert hopf.exact.parameters["u"] == pytest.approx(19.9055032487, rel=1e-10)
+    assert abs(hopf.exact.shift["omega"]) < 1e-3
+    assert rb.certify(branch, "complete").holds
+
+
+def test_the_order_stays_where_no_exact_hopf_point_is_near(slow, monkeypatch):
+    monkeypatch.setattr(bands, "exact_hopf_near", lambda *_: None)
+    branch = rb.continue_equilibria(slow, "mu", (-0.01, 0.01))
+    assert "order was raised to 3.38 times its default" in branch.stopped
+    assert not branch.early
+
+
 def test_the_vehicles_own_band_will_do():
     branch = rb.continue_equilibria(rb.load_model("racs"), "u", (5, 30))
     assert branch.system.realisation.band == (0.1, 50.0)
