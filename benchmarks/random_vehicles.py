@@ -227,7 +227,8 @@ def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, s
     orbits = rb.continue_orbits(hopf, span, method=method)
     # the library says itself that it no longer resolves what it ends with
     resolved = {p.name for p in orbits.special if p.label != "MX"} & orbits.profiles.keys()
-    slowest = branch.system.realisation.band[0] if method == "collocation" else 0.0
+    info = branch.system.realisation
+    slowest = info.band[0] if info is not None and method == "collocation" else 0.0
     left_out = []
     for name in sorted(resolved):
         profile = orbits.profiles[name]
