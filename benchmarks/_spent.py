@@ -12,7 +12,10 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 _STARTER: Final = """
 import json, resource, subprocess, sys
@@ -32,7 +35,13 @@ class Spent:
     megabytes: float
 
 
-def spent(command: list[str], told: Path, given: str = "", folder: Path | None = None) -> Spent:
+def spent(
+    command: list[str],
+    told: Path,
+    given: str = "",
+    folder: Path | None = None,
+    variables: Mapping[str, str] | None = None,
+) -> Spent:
     """Run a program on one thread.
 
     Parameters
@@ -45,6 +54,8 @@ def spent(command: list[str], told: Path, given: str = "", folder: Path | None =
         Its standard input.
     folder : Path, optional
         Where it runs.
+    variables : mapping of str to str, optional
+        Of its environment, besides this process's.
 
     Raises
     ------
@@ -52,6 +63,7 @@ def spent(command: list[str], told: Path, given: str = "", folder: Path | None =
         If it fails; the message has the end of what it printed.
     """
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    environment |= variables or {}
     run = subprocess.run(
         [sys.executable, "-E", "-S", "-c", _STARTER, str(told), *command],
         input=given,
