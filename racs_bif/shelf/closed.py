@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING, Final
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from pathlib import Path
+from typing import Final
 
 _CLOSED: Final = {
     "__future__",
@@ -54,6 +52,11 @@ _OPEN_NAMES: Final = {
     *("__import__", "__builtins__", "__loader__", "__spec__"),
 }
 """Names by which a file can reach what is not in its text."""
+
+
+def rules() -> str:
+    """Return what the judgement of `is_closed` depends on besides a file's text: this module."""
+    return Path(__file__).read_text(encoding="utf-8")
 
 
 def is_closed(path: Path, text: str) -> bool:

@@ -14,7 +14,7 @@ from racs_bif.equilibria.calibrate import calibrate
 from racs_bif.errors import ModelError, RacsBifError, UsageError, nearest
 from racs_bif.fractional.realisations import choose_realisation
 from racs_bif.fractional.system import System
-from racs_bif.shelf.closed import is_closed
+from racs_bif.shelf.closed import is_closed, rules
 from racs_bif.shelf.folders import find, is_file_name
 from racs_bif.shelf.modules import complaint, load_module
 from racs_bif.shelf.tables import model_from_toml
@@ -182,22 +182,21 @@ def _system(
 def _compiled(path: Path, options: dict[str, str]) -> CompiledModel:
     """Compile the model of a file, or take it from the cache.
 
-    Only a file that cannot depend on anything but its own text is taken by its text; any other is
-    run, and the equations that it builds are looked up.
+    Only a file that cannot depend on anything but its own text is kept, and found, by its text; any
+    other is run, and the equations that it builds are looked up.
     """
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeError) as error:
         msg = f"model file {path} cannot be read ({error}); write it in UTF-8"
         raise ModelError(msg) from error
-    closed = is_closed(path, text)
     # A file in TOML may leave its name to that of the file.
     told = (text, path.name) if path.suffix == ".toml" else (text,)
-    key = cache.key("file", *told, repr(sorted(options.items())))
-    sources = read_sources(key) if closed else None
+    key = cache.key("file", rules(), *told, repr(sorted(options.items())))
+    sources = read_sources(key)
     if sources is None:
         compiled = compile_model(_build(path, options))
-        if closed and compiled.external is None:
+        if compiled.external is None and is_closed(path, text):
             write_sources(key, compiled.sources)
         return compiled
     return CompiledModel(sources)
