@@ -72,7 +72,7 @@ class Counter:
     def __call__(self, X: Array, P: Array) -> tuple[Counts, Array]:
         """Return counts and static margins (N,) at equilibria X (size, N), parameters P (np, N)."""
         core = self.sheet.core(X, P)
-        static = _static_margin(self.sheet.equations(P)(X)[1])
+        static = _static_margin(self.sheet.static(core, P))
         if self.sheet.size > LARGEST:
             counts = self._one_by_one(X, P)
         else:

@@ -110,19 +110,31 @@ class Members:
         varying = compiled.kernel("jacobian_varying").bind(padded) if len(rows) else None
         fixed = np.zeros((P.shape[1], self.size, self.size))
         fixed[:, *self._fixed] = compiled.kernel("jacobian_fixed").bind(padded)().T
-        static = [(_static(*law.numerator), _static(*law.denominator)) for law in self.laws(P)]
+        gains = self._gains(P)
 
         def at(X: Array) -> tuple[Array, Array]:
             value, jacobian = core(X), fixed.copy()
             if varying is not None:
                 jacobian[:, rows, columns] = varying(X).T
-            for row, (n, d) in enumerate(static, start=self.ny):
+            for row, (n, d) in enumerate(gains, start=self.ny):
                 value[row] = n * value[row] - d * X[row]
-                jacobian[:, row] *= n[:, None]
-                jacobian[:, row, row] -= d
-            return value, jacobian
+            return value, self._at_rest(jacobian, gains)
 
         return at
+
+    def static(self, core: Array, P: Array) -> Array:
+        """Return the Jacobian (N, size, size) of `equations` from that of the core."""
+        return self._at_rest(core.copy(), self._gains(P))
+
+    def _gains(self, P: Array) -> list[tuple[Array, Array]]:
+        """Return N(0) and D(0) of each law."""
+        return [(_static(*law.numerator), _static(*law.denominator)) for law in self.laws(P)]
+
+    def _at_rest(self, core: Array, gains: list[tuple[Array, Array]]) -> Array:
+        for row, (n, d) in enumerate(gains, start=self.ny):
+            core[:, row] *= n[:, None]
+            core[:, row, row] -= d
+        return core
 
     def newton(self, X: Array, P: Array) -> tuple[Array, NDArray[np.bool_], Array]:
         """Solve near X (size, N), where Newton's method contracts at once.
