@@ -7,6 +7,7 @@ in a fraction of a second. Its clock is its own processor time, so that a busy m
 
 from __future__ import annotations
 
+import compileall
 import gc
 import math
 import os
@@ -112,26 +113,32 @@ class Watch:
             self.tell(f"failed {report.nodeid or 'import'}")
 
 
-class Changed(MetaPathFinder, SourceFileLoader):
+class Changed(MetaPathFinder):
     """Imports one module from the code given; its file is not touched."""
 
     def __init__(self, name: str, path: Path, code: CodeType) -> None:
-        super().__init__(name, str(path))
-        self._code = code
+        self._name, self._path, self._code = name, path, code
 
     def find_spec(self, fullname: str, *_: object) -> ModuleSpec | None:
         """Find the one module."""
-        if fullname != self.name:
+        if fullname != self._name:
             return None
-        return spec_from_file_location(fullname, self.path, loader=self)
+        loader = _Loader(fullname, str(self._path))
+        loader.code = self._code
+        return spec_from_file_location(fullname, self._path, loader=loader)
 
-    def get_code(self, fullname: str) -> CodeType | None:
-        """Return its code."""
-        return self._code if fullname == self.name else super().get_code(fullname)
+
+class _Loader(SourceFileLoader):
+    code: CodeType
+
+    def get_code(self, fullname: str) -> CodeType:  # there is one module only
+        return self.code
 
 
 def ready(names: Iterable[str]) -> None:
     """Import what the tests will need, and keep it out of the way of garbage collection."""
+    for name in ("racs_bif", "tests"):
+        compileall.compile_dir(HERE / name, quiet=1)
     for name in ("OPENBLAS", "OMP", "MKL"):  # read when numpy is loaded: threads only cost time
         os.environ[f"{name}_NUM_THREADS"] = "1"
     os.environ["MPLBACKEND"] = "Agg"

@@ -180,7 +180,8 @@ class _Statement:
         if not isinstance(self.node, ast.Assign | ast.AnnAssign):
             return {}
         targets = self.node.targets if isinstance(self.node, ast.Assign) else [self.node.target]
-        names = {node.id for target in targets for node in ast.walk(target) if _is_name(node)}
+        nodes = (node for target in targets for node in ast.walk(target))
+        names = {node.id for node in nodes if isinstance(node, ast.Name)}
         return _using(frozenset(names))
 
 
@@ -214,8 +215,8 @@ class _Module:
 
 
 def _first(node: ast.stmt) -> int:
-    decorators = getattr(node, "decorator_list", [])
-    return min([node.lineno, *(each.lineno for each in decorators)])
+    decorators: list[ast.expr] = getattr(node, "decorator_list", [])
+    return min(node.lineno, *(each.lineno for each in decorators), node.lineno)
 
 
 def _header(node: ast.stmt) -> set[int]:
@@ -223,10 +224,6 @@ def _header(node: ast.stmt) -> set[int]:
     body = getattr(node, "body", None)
     last = body[0].lineno - 1 if body else (node.end_lineno or node.lineno)
     return set(range(node.lineno, max(last, node.lineno) + 1))
-
-
-def _is_name(node: ast.AST) -> bool:
-    return isinstance(node, ast.Name)
 
 
 @cache

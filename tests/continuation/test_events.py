@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from racs_bif.continuation import Stopped, trace
+from racs_bif.continuation import StepSettings, Stopped, trace
 
 TRUE = 0.31
 
@@ -29,6 +29,15 @@ def found(branch):
 def test_two_crossings_within_one_step_are_both_found(kinds, real_parts):
     branch = trace(kinds.Pairs(*real_parts), [0, 0], (-1, 1), [kinds.Hopf()])
     np.testing.assert_allclose(found(branch), [TRUE, TRUE + 1e-3], atol=1e-10)
+    assert branch.message == ""
+
+
+def test_two_crossings_within_the_first_step_are_both_found(kinds):
+    near = (-0.995, -0.994)
+    problem = kinds.Pairs(lambda p: p - near[0], lambda p: p - near[1], lambda p: -1.0)
+    settings = StepSettings(initial=1 / 30)
+    branch = trace(problem, [np.sin(-1.0), -1], (-1, 1), [kinds.Hopf()], settings)
+    np.testing.assert_allclose(found(branch), near, atol=1e-10)
     assert branch.message == ""
 
 

@@ -1,5 +1,7 @@
 """The branch between two of its points."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -42,3 +44,20 @@ def test_a_cubic_worse_than_foreseen_is_corrected(quintic):
     z, _, iterations = quintic.correct(0.25)
     assert error(z) < 1e-12
     assert iterations > 0
+
+
+@pytest.mark.parametrize(
+    ("fails", "expected"), [(lambda p: abs(p) < 0.01, 0.585), (lambda p: p > -0.01, 0.415)]
+)
+def test_a_point_that_fails_is_looked_for_a_little_further_along(quintic, fails, expected):
+    problem = quintic._builder.problem
+    works = problem.f
+
+    def f(x, p):
+        return math.nan if fails(p) else works(x, p)
+
+    problem.f = f
+    at, point = quintic.point(0.5)
+    assert at == pytest.approx(expected, rel=1e-12)
+    assert point.parameter == pytest.approx(at - 0.5, abs=1e-3)
+    assert quintic.point(at) == (at, point)

@@ -85,3 +85,18 @@ def test_a_branch_that_is_vertical_foresees_nothing():
     assert not scaling.foresee(np.array([1.0, 1.0, 0.0]))
     np.testing.assert_array_equal(scaling.weights, before)
     assert scaling.foresee(np.array([1.0, 1.0, 1e-6]))
+
+
+def test_steps_of_one_length_only_are_allowed():
+    settings = StepSettings(minimum=0.01, initial=0.01, maximum=0.01)
+    assert settings.minimum == settings.initial == settings.maximum
+
+
+def test_only_the_parameter_bends_a_branch():
+    scaling = Scaling(2.0, np.ones(3))
+    before, after = np.array([1.0, 2.0, 3.0, 0.5]), np.array([1.0, 7.0, -3.0, 0.5])
+    assert scaling.bend(before, after) == 0.0
+    after[-1] = 0.7
+    small = scaling.bend(before, after)
+    after[-1] = 0.1
+    assert scaling.bend(before, after) == pytest.approx(2.0 * small)

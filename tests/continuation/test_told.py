@@ -2,7 +2,16 @@
 
 import logging
 
+import numpy as np
+
 from racs_bif.continuation import trace
+from racs_bif.continuation.points import Point, SpecialPoint
+from racs_bif.continuation.told import Table
+
+
+def rows(caplog):
+    """Return the rows of points, split into their columns."""
+    return [line.split() for line in caplog.messages if line.split()[0].isdigit()]
 
 
 def test_a_heading_stands_over_every_twenty_points(kinds, fold, caplog):
@@ -16,3 +25,33 @@ def test_a_heading_stands_over_every_twenty_points(kinds, fold, caplog):
     assert heads == [1 + 21 * k for k in range(len(heads))]
     assert len(heads) == -(-len(rows) // 20)
     assert [row[2] for row in rows if row[2].isalpha()] == ["LP"]
+
+
+def test_the_table_says_which_way_and_how_many_are_unstable(kinds, fold, caplog):
+    with caplog.at_level(logging.INFO, logger="racs_bif.continuation"):
+        trace(fold, [0.5, 0.25], (-0.5, 1.0))
+    ways = [line.split()[-1] for line in caplog.messages if " in p, " in line]
+    assert ways == ["forwards", "backwards"]
+    first, last = rows(caplog)[0], rows(caplog)[-1]
+    assert float(first[4]) > 0.0 > float(last[4])
+    assert (first[5], last[5]) == ("0", "1")
+    caplog.clear()
+    blind = kinds.Scalar(lambda x, p: x - p, lambda x, p: 1.0, lambda x, p: -1.0, spectral=False)
+    with caplog.at_level(logging.INFO, logger="racs_bif.continuation"):
+        trace(blind, [0.0, 0.0], (0.0, 1.0))
+    assert caplog.messages[0].endswith("in p, forwards")
+    assert {row[5] for row in rows(caplog)} == {"-"}
+
+
+def test_a_last_point_that_becomes_special_is_told_again(line, caplog):
+    def at(p):
+        z = np.array([p, p])
+        return Point(z, np.ones(2), np.zeros(0, complex), None, 0, {"x": p}, p, 1)
+
+    event = SpecialPoint("LP", "LP1", 1, np.ones(2), np.ones(2), np.zeros(0, complex), {}, 0.0)
+    with caplog.at_level(logging.INFO, logger="racs_bif.continuation"):
+        table = Table(line, 7, 1)
+        table.tell([(at(0.0), None), (at(1.0), None)])
+        table.tell([(at(0.0), None), (at(0.9), event), (at(2.0), None)])
+    assert [row[1] for row in rows(caplog)] == ["1", "2", "2", "3"]
+    assert [row[2] for row in rows(caplog)][2] == "LP"

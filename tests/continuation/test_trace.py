@@ -178,6 +178,21 @@ def test_a_helix_comes_by_its_start_but_does_not_close(kinds):
     assert branch.points[-1].measures["turns"] > 1.5
 
 
+def test_a_ring_far_from_the_parameter_closes(kinds):
+    """Only the parameter is compared with its span, not an unknown that is far from it."""
+
+    class Ring(kinds.Scalar):
+        def residual(self, z):
+            return np.array([z[0] ** 2 + z[2] ** 2 - 1.0, z[1] - 50.0 - z[0]])
+
+        def jacobian(self, z):
+            return np.array([[2.0 * z[0], 0.0, 2.0 * z[2]], [-1.0, 1.0, 0.0]])
+
+    branch = trace(Ring(None, None, None, spectral=False), [1.0, 51.0, 0.0], (-2, 2))
+    assert branch.stopped is Stopped.CLOSED
+    assert len(branch.points) < 400
+
+
 def test_given_tangent_is_corrected_onto_the_branch(circle):
     branch = trace(circle, [0.6, 0.79], (-2, 2), tangent=[-0.8, 0.6])
     assert branch.stopped is Stopped.CLOSED

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.argument import count_right
 from racs_bif.fractional.characteristic import Characteristic
 from racs_bif.fractional.laws import PowerSum
@@ -70,6 +71,12 @@ def test_mikhailov_says_where_roots_are_on_the_axis():
     assert count.on_axis == pytest.approx([3.0])
 
 
+def test_mikhailov_refuses_a_phase_that_is_no_count(monkeypatch):
+    monkeypatch.setattr("racs_bif.fractional.mikhailov.outer_phase", lambda *_: 1.3)
+    with pytest.raises(ConvergenceError, match="which is no count"):
+        mikhailov(oscillator(-0.1))
+
+
 def test_zero_is_reported_by_both_counts():
     ch = ordinary(np.array([[0.0, 1.0], [0.0, 2.0]]))
     assert count_right(ch).at_zero
@@ -98,4 +105,5 @@ def test_what_a_count_costs():
     matrix = rng.normal(size=(5, 5)) * 3.0
     assert count_right(ordinary(matrix)).evaluations < 200
     assert mikhailov(ordinary(matrix)).evaluations < 150
+    assert mikhailov(ordinary(matrix)).distance < 0.01
     assert count_right(ordinary(matrix)).discrepancy < 0.26

@@ -13,7 +13,7 @@ from racs_bif.fractional.enclosed import EnclosedModel
 from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.fractional.intervals import BALLS, Ball, BallFunctions, UnboundedError, finite
-from racs_bif.fractional.krawczyk import NoneThereError
+from racs_bif.fractional.krawczyk import NoneThereError, _above
 from racs_bif.fractional.proofs import _Fold, _Hopf, prove_fold, prove_hopf
 
 U_H, OMEGA_H = 10.2, 9.5200832  # model.md, section 4
@@ -313,3 +313,11 @@ def test_nothing_is_proved_of_a_function_that_is_called():
     system = system_of(model)
     with pytest.raises(UsageError, match="nothing can be proved of equations that call a Python"):
         prove_hopf(system.exact, system.path("mu"), np.zeros(2), 0.0, 1.0)
+
+
+def test_bounds_are_rounded_outwards():
+    assert _above(arb(0.5)) == 0.5
+    with ctx.workprec(200):
+        for k in range(1, 50):
+            exact = (arb(k) / 51).upper()
+            assert exact <= arb(_above(exact)) < exact * (1.0 + 1e-15)

@@ -9,6 +9,7 @@ import pytest
 from racs_bif.errors import ParameterError, RacsBifError, UsageError
 from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.fractional.oustaloup import Oustaloup
+from racs_bif.fractional.residues import checked_rates
 
 VISCOELASTIC = "(1 + (ts*s)**g)/(1 + (te*s)**a)"
 REALISATIONS = {
@@ -215,3 +216,15 @@ def test_filters_are_smooth_in_the_orders(law_of, name):
     steps = np.abs(np.diff(responses))
     assert steps.max() < 1e-5
     assert steps.max() < 1.001 * steps.min()
+
+
+def test_five_rates_a_decade_unless_told():
+    assert Diffusive(band=(0.1, 60.0)).order == 14
+    assert Diffusive(band=(1.0, 2.0)).order == 4
+
+
+def test_poles_that_coincide_are_refused():
+    np.testing.assert_array_equal(checked_rates(np.array([-3.0, -1.0]), "m", "Z"), [1.0, 3.0])
+    for poles in ([-1.0, -2.0, -2.0], [-1.0, 2.0], [-1.0, -2.0 + 1j, -2.0 - 1j], [-1.0, np.nan]):
+        with pytest.raises(ParameterError, match="m finds a pole of 'Z'"):
+            checked_rates(np.array(poles), "m", "Z")

@@ -60,6 +60,21 @@ def test_static_gains_that_are_parameters_move_the_equilibrium(system_of, differ
         np.testing.assert_allclose(exact.residual_p(X, p, dp), slope, atol=1e-11)
 
 
+def test_static_gains_of_two_elements_move_the_equilibrium(system_of, differences):
+    """x' = b - Z x - Y y and y' = x - Y y: each law's own gain stands in its own row."""
+    system = system_of(
+        {"x": "b - w - v", "y": "x - v"},
+        elements=[("w", "x", "n + s**q"), ("v", "y", "(1 + s**q)/(d + s**(q/2))")],
+        parameters={"b": 3.0, "n": 2.0, "d": 5.0, "q": 0.6},
+    )
+    exact, p = system.exact, system.values
+    X = exact.equilibrium(np.zeros(4), p)
+    np.testing.assert_allclose(X, [1.0, 5.0, 2.0, 1.0], rtol=1e-14)
+    for dp in np.eye(4):
+        slope = differences(lambda t, dp=dp: exact.residual(X, p + t * dp), 0.0, 1e-3)
+        np.testing.assert_allclose(exact.residual_p(X, p, dp), slope, atol=1e-10)
+
+
 def newton(function, s):
     """Polish a root by the secant method, which needs no derivative."""
     before, s = s, s * (1.0 + 1e-5)

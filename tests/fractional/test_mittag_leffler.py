@@ -72,3 +72,10 @@ def test_shapes_types_and_overflow():
 def test_what_it_refuses(a, b, z):
     with pytest.raises(UsageError):
         mittag_leffler(a, b, z)
+
+
+def test_up_to_the_largest_number():
+    """Just below overflow E_1/2(z) is 2 exp(z**2)."""
+    z = complex(705.0, 1.0) ** 0.5
+    expected = 2.0 * math.exp(705.0) * complex(math.cos(1.0), math.sin(1.0))
+    assert complex(mittag_leffler(0.5, 1.0, z)) == pytest.approx(expected, rel=1e-10)

@@ -8,6 +8,7 @@ import sympy as sp
 from racs_bif.errors import ModelError, ParameterError, UsageError
 from racs_bif.fractional.creep import creep, relaxation
 from racs_bif.fractional.law_numbers import law_in_numbers
+from racs_bif.fractional.laws import Law, PowerSum
 from racs_bif.fractional.moduli import moduli
 from racs_bif.fractional.passivity import _text, passivity
 from racs_bif.fractional.real_powers import positive_zeros
@@ -176,3 +177,15 @@ def test_bands_in_words():
     assert _text((0.0, 2.0)) == "< 2 rad/s"
     assert _text((1.0, 2.0)) == "in 1 .. 2 rad/s"
     assert _text((0.0, np.inf)) == "at all frequencies"
+
+
+def test_bands_between_many_edges():
+    """Im Z / omega = (1 - w)(100 - w)(w - 900) with w = omega**2, by odd powers of s."""
+    numbers = -np.poly([1.0, 100.0, 900.0])[::-1] * np.array([1.0, -1.0, 1.0, -1.0])
+    law = Law(PowerSum(numbers, np.array([1.0, 3.0, 5.0, 7.0])), PowerSum(np.ones(1), np.zeros(1)))
+    omega = np.array([0.5, 5.0, 20.0, 50.0])
+    assert (law(1j * omega).imag > 0.0).tolist() == [True, False, True, False]
+    (first, second) = passivity(law).active
+    assert first == pytest.approx((1.0, 10.0), rel=1e-9)
+    assert second[0] == pytest.approx(30.0, rel=1e-9)
+    assert second[1] == math.inf

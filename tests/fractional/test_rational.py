@@ -73,3 +73,9 @@ def test_filters_that_are_no_quotients_of_ours_are_refused():
     bent = Filter(np.array([[-1.0, 1.0], [0.0, -2.0]]), np.ones(2), np.ones(2), 0.0)
     with pytest.raises(UsageError, match="bent"):
         _slope("bent", bent, bent)
+
+
+def test_a_filter_without_memory_is_its_gain(law_of):
+    law = law_of("1/(1 + s**q)", q=0.5)[0]
+    made = rational(law, Filter(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 2.5))
+    np.testing.assert_array_equal(made(np.array([0.1j, 1j, 10j])), 2.5)

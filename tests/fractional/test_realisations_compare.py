@@ -11,6 +11,7 @@ from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.fractional.charef import Charef
 from racs_bif.fractional.compare import compare, is_passive
 from racs_bif.fractional.diffusive import Diffusive
+from racs_bif.fractional.filter import Filter
 from racs_bif.fractional.fitted import Fitted
 from racs_bif.fractional.modified_oustaloup import ModifiedOustaloup
 from racs_bif.fractional.nonnegative import NonNegative
@@ -33,6 +34,18 @@ BOUNDS = {
     "continued-fraction": 5e-4,
     "vector-fitting": 1e-4,
     "aaa": 5e-3,
+}
+# worst error of the law itself between 1.5 and 50 rad/s
+ERRORS = {
+    "diffusive": 3e-3,
+    "fitted": 5e-3,
+    "oustaloup": 4e-3,
+    "modified-oustaloup": 2e-4,
+    "charef": 8e-3,
+    "matsuda": 3e-3,
+    "continued-fraction": 4e-3,
+    "vector-fitting": 4e-5,
+    "aaa": 3e-3,
 }
 
 
@@ -67,6 +80,7 @@ def test_table(rows):
         assert row.real_poles
         assert row.largest_pole < 0.0
         assert row.hopf_error < BOUNDS[name], name
+        assert row.error < ERRORS[name], name
     assert taken["fitted"].states == 8
     assert min(taken, key=lambda name: taken[name].hopf_error) == "fitted"
 
@@ -178,3 +192,10 @@ def test_a_spread_is_a_factor():
     for spread in (0.0, -1.0, math.inf):
         with pytest.raises(UsageError, match=r"spread .* is not usable; give a positive factor"):
             NonNegative(band=BAND, spread=spread)
+
+
+def test_a_filter_that_is_all_but_a_gain_is_passive():
+    """Its phase is positive, and smaller than rounding."""
+    almost = Filter(np.array([[-1.0]]), np.ones(1), np.array([-1e-15]), 1.0)
+    assert is_passive(almost)
+    assert not is_passive(Filter(np.array([[-1.0]]), np.ones(1), np.array([1e-3]), 1.0))

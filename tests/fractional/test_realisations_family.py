@@ -256,3 +256,22 @@ def test_settings_are_checked(name):
         choose_realisation(name, (60.0, 1.0))
     with pytest.raises(UsageError, match=r"too small|too few"):
         choose_realisation(name, (1.0, 60.0), order=-1)
+
+
+def test_modified_oustaloup_is_the_formula_of_xue():
+    """(d H/b)**a (d s**2 + b H s)/(d (1-a) s**2 + b H s + d a L) times Oustaloup's filter."""
+    low, high, b, d, n = 0.1, 100.0, 10.0, 9.0, 6
+    realised = ModifiedOustaloup(band=(low, high), sections=n).realise(LAWS["springpot"])
+    s = 1j * np.geomspace(1e-3, 1e4, 29)
+    corner, first = b * high / d, d * low / b
+    bend = (s**2 + corner * s) / (0.5 * s**2 + corner * s + 0.5 * low * high)
+    u = corner / first
+    zeros, poles = (first * u ** ((np.arange(n) + 0.5 + side) / n) for side in (-0.25, 0.25))
+    inner = np.prod((s[:, None] + zeros) / (s[:, None] + poles), axis=1)
+    np.testing.assert_allclose(realised(s), 2.0 * corner**0.5 * bend * inner, rtol=1e-9)
+
+
+def test_four_and_a_half_rates_a_decade_unless_told():
+    for kind in (NonNegative, VectorFitting):
+        assert kind(band=(0.2, 60.0)).order == 11
+        assert kind(band=(1.0, 2.0)).order == 4

@@ -284,3 +284,23 @@ def test_two_elements_and_an_integrator(system_of, differences):
     # the integrator demands x + 0.1 w = c, the first element rests at w = (x + 0.2 z)/2
     assert X[0] - 0.4 + 0.1 * X[3] == pytest.approx(0.0, abs=1e-12)
     assert X[3] == pytest.approx((X[0] + 0.2 * X[2]) / 2.0, rel=1e-12)
+
+
+def test_outputs_of_an_element_that_passes_its_input_on(system_of, differences):
+    """Z(0) = n/d, and Z tends to one: its output has a share of its input at once."""
+    system = system_of(
+        {"x": "b - w*(1 + x)", "y": "w - y"},
+        elements=[("w", "x + y", "(n + s**q)/(d + s**q)")],
+        parameters={"b": 3.0, "n": 2.0, "d": 5.0, "q": 0.6},
+    )
+    field, p = system.field, system.values
+    rest = system.equilibrium()
+    X = system.exact_point(rest, p)
+    assert field.outputs(rest, p) == pytest.approx([X[2]], rel=1e-10)
+    assert X[2] == pytest.approx(0.4 * (X[0] + X[1]), rel=1e-10)
+    rng = np.random.default_rng(0)
+    x, v = rng.normal(size=(2, len(rest)))
+    slope = differences(lambda t: field.outputs(x + t * v, p), 0.0, 1e-3)
+    np.testing.assert_allclose(field.outputs_along(x, p, v), slope, rtol=1e-9)
+    both = field.outputs(np.column_stack([rest, x]), p)
+    np.testing.assert_allclose(both.T, [field.outputs(rest, p), field.outputs(x, p)], rtol=1e-13)

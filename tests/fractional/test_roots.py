@@ -210,3 +210,26 @@ def test_matrices_that_cannot_be_used(left, core):
 def test_a_line_that_is_not_finite_is_refused():
     with pytest.raises(ConvergenceError, match="not finite"):
         roots_right(ordinary(np.eye(2)), math.nan)
+
+
+def test_the_ring_of_all_roots_is_narrow():
+    for largest, smallest in ((1e-3, 1e-5), (1e5, 1e3), (1e3, 1e-3)):
+        ring = annulus(ordinary(np.diag([-largest, -smallest])))
+        assert math.log(largest) <= ring.outer < math.log(largest) + 0.2
+        assert math.log(smallest) - 0.2 < ring.inner <= math.log(smallest)
+
+
+def test_a_double_root_is_as_sharp_as_a_simple_one():
+    """Its two estimates are apart by the root of rounding; their mean is not."""
+    A = np.array([[0.3, 1.0, 0.2, 0.7], [-2.0, 0.3, 0.4, 0.1], [0, 0, 0.3, 1.0], [0, 0, -2.0, 0.3]])
+    found = roots_right(ordinary(A), 0.0)
+    assert found.multiplicities.tolist() == [2, 2]
+    assert abs(found.roots[0] - (0.3 + 2.0**0.5 * 1j)) < 1e-13
+    assert found.errors.max() < 1e-12
+
+
+def test_errors_are_those_of_the_roots():
+    """The zeros are found over log s: a root's error is as large as the root."""
+    small, large = (roots_right(ordinary(np.diag([-r])), -1e9) for r in (1e-4, 1e4))
+    assert small.errors.max() < 1e-17
+    assert large.errors.min() > 1e-13
