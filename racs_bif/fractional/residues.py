@@ -171,9 +171,10 @@ def checked_rates(poles: Complex | Array, method: str, what: str) -> Array:
     bad = (values.real >= 0.0) | (np.abs(values.imag) > _APART * np.abs(values))
     bad |= ~np.isfinite(values)
     rates = np.sort(-values.real)
-    if not np.any(bad) and np.all(rates[1:] > (1.0 + _APART) * rates[:-1]):
+    same = rates[1:] <= (1.0 + _APART) * rates[:-1]
+    if not np.any(bad) and not np.any(same):
         return rates
-    shown = values[bad][0] if np.any(bad) else -rates[0]
+    shown = values[bad][0] if np.any(bad) else -rates[1:][same][0]
     msg = (
         f"{method} finds a pole of '{what}' at {shown:.4g} rad/s, not real, negative and simple; "
         "lower its order, or use --realisation fitted or diffusive"

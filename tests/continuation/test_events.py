@@ -179,6 +179,29 @@ def test_equations_that_fail_where_a_function_dips_make_no_event(kinds, line):
     assert len(trace(line, [0, 0], (0, 1), [dip]).special) == 2
 
 
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_equations_that_fail_beside_an_event_locate_it_roughly(kinds, sense):
+    def wave(fails):
+        def f(x, p):
+            if fails(p):
+                msg = "outside its domain"
+                raise FloatingPointError(msg)
+            return x - 0.2 * math.sin(20.0 * p)
+
+        return kinds.Scalar(f, lambda x, p: 1.0, lambda x, p: -4.0 * math.cos(20.0 * p))
+
+    accepted = [point.z[1] for point in trace(wave(lambda p: False), [0, 0], (0, 1)).points]
+    low, high = accepted[-6:-4]
+    middle, width = 0.5 * (low + high), high - low
+    broken = wave(lambda p: abs(p - middle) < 0.4 * width)
+    detector = kinds.Given(lambda z: sense * (z[1] - middle))
+    branch = trace(broken, [0, 0], (0, 1), [detector])
+    (event,) = branch.special
+    assert 0.4 * width <= abs(event.z[1] - middle) <= 0.5 * width
+    assert 0.8 * width < event.interval <= width
+    assert "could be located only roughly near" in branch.message
+
+
 def test_events_at_the_zero_of_a_flat_test_function(kinds, line):
     branch = trace(line, [0, 0], (0, 1), [kinds.Given(lambda z: (z[1] - 0.4321) ** 3)])
     assert found(branch) == pytest.approx([0.4321], abs=1e-4)

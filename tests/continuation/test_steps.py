@@ -100,3 +100,8 @@ def test_only_the_parameter_bends_a_branch():
     small = scaling.bend(before, after)
     after[-1] = 0.1
     assert scaling.bend(before, after) == pytest.approx(2.0 * small)
+
+
+def test_which_eigenvalues_are_unstable_is_asked_one_by_one(line):
+    spectrum = np.array([1.0, -2.0, 3.0 + 1j, 3.0 - 1j, 0.0])
+    assert line.sides(spectrum).tolist() == [True, False, True, True, False]

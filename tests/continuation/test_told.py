@@ -54,4 +54,15 @@ def test_a_last_point_that_becomes_special_is_told_again(line, caplog):
         table.tell([(at(0.0), None), (at(1.0), None)])
         table.tell([(at(0.0), None), (at(0.9), event), (at(2.0), None)])
     assert [row[1] for row in rows(caplog)] == ["1", "2", "2", "3"]
-    assert [row[2] for row in rows(caplog)][2] == "LP"
+    assert [row[2:4] for row in rows(caplog) if row[2].isalpha()] == [["LP", "1"]]
+    assert [row[-2] for row in rows(caplog)[1:]] == ["1.00E+00", "1.00E-01", "1.10E+00"]
+
+
+def test_names_that_are_too_long_for_their_column_are_cut(kinds, caplog):
+    problem = kinds.Scalar(lambda x, p: x - p, lambda x, p: 1.0, lambda x, p: -1.0)
+    problem.parameter = "a_parameter_of_a_long_name"
+    with caplog.at_level(logging.INFO, logger="racs_bif.continuation"):
+        trace(problem, [0.0, 0.0], (0.0, 1.0))
+    head = next(line for line in caplog.messages if line.split()[0] == "BR")
+    assert head.split()[4:7] == ["a_parameter..", "norm", "x"]
+    assert len(head) == len(next(line for line in caplog.messages if line.split()[0].isdigit()))

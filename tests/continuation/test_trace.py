@@ -296,6 +296,21 @@ def test_target_just_short_of_a_fold_is_met_on_both_sides(fold):
     np.testing.assert_allclose(found, [-1e-3, 1e-3], rtol=1e-9)
 
 
+def test_target_just_short_of_a_fold_where_an_unknown_goes_on(kinds):
+    """Only the parameter turns back; the second unknown does not."""
+
+    class Turning(kinds.Scalar):
+        def residual(self, z):
+            return np.array([z[2] - z[0] ** 2, z[1] - 5.0 - z[0]])
+
+        def jacobian(self, z):
+            return np.array([[-2.0 * z[0], 0.0, 1.0], [-1.0, 1.0, 0.0]])
+
+    problem = Turning(None, None, None, spectral=False)
+    branch = trace(problem, [1.0, 6.0, 1.0], (-1, 2), targets=[1e-6])
+    np.testing.assert_allclose([s.z[0] for s in branch.special], [-1e-3, 1e-3], rtol=1e-9)
+
+
 def test_target_just_short_of_a_fold_is_met_in_a_walk_of_one_step(kinds):
     # No other point tells that the parameter dips between these two.
     problem = kinds.Scalar(

@@ -8,7 +8,7 @@ import pytest
 from flint import acb, arb, ctx
 
 from racs_bif.errors import ConvergenceError, UsageError
-from racs_bif.fractional.certificates import Place, beside, changes, exact_count, resolve
+from racs_bif.fractional.certificates import Place, beside, changes, exact_count, near, resolve
 from racs_bif.fractional.enclosed import EnclosedModel
 from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
@@ -39,6 +39,17 @@ def brusselator(system_of):
 def parabola(system_of):
     """x' = mu - 1 - (x - 2)^2: a fold at mu = 1, x = 2."""
     return system_of({"x": "mu-1-(x-2)**2"}, parameters={"mu": 2.0}, guess={"x": 3.0})
+
+
+@pytest.fixture(scope="module")
+def gained(system_of):
+    """Two elements whose static gains are set by parameters, which the equations have too."""
+    return system_of(
+        {"x": "b - w - v", "y": "x - v"},
+        elements=[("w", "b*x**2", "n*d + s**q"), ("v", "y", "(b + s**q)/(d*b + s**(q/2))")],
+        parameters={"b": 3.0, "n": 2.0, "d": 5.0, "q": 0.6},
+        guess={"x": 0.2, "y": 0.5},
+    )
 
 
 # ------------------------------------------------------------------------------------- proofs
@@ -126,15 +137,8 @@ def test_a_degenerate_point_is_not_proved(system_of):
         solve_fold(system.exact, system.path("mu"), np.array([1.9]), 1.0)
 
 
-@pytest.mark.parametrize("parameter", ["u", "C_s", "alpha", "gamma", "tau_eps", "m_c"])
-@pytest.mark.parametrize("kind", ["hopf", "fold"])
-def test_slopes_agree_with_differences(vehicle, hopf, differences, parameter, kind):
-    value = 1.01 * vehicle.with_parameters({"u": U_H}).parameters[parameter]
-    path = vehicle.with_parameters({"u": U_H}).path(parameter)
-    if kind == "hopf":
-        equations = _Hopf(vehicle.exact, path, hopf.X, value, 1.01 * hopf.omega)
-    else:
-        equations = _Fold(vehicle.exact, path, hopf.X, value)
+def slopes_agree(equations, differences):
+    """Compare the derivatives of the equations of a proof with differences."""
     centre = equations.centre
 
     def values(z):
@@ -151,6 +155,25 @@ def test_slopes_agree_with_differences(vehicle, hopf, differences, parameter, ki
         expected = differences(along, 0.0, 1e-3 * equations.scales[k])
         allowed = 1e-7 * np.abs(column).max() + 1e-11
         np.testing.assert_allclose(column, expected, rtol=1e-6, atol=allowed)
+
+
+@pytest.mark.parametrize("parameter", ["u", "C_s", "alpha", "gamma", "tau_eps", "m_c"])
+@pytest.mark.parametrize("kind", ["hopf", "fold"])
+def test_slopes_agree_with_differences(vehicle, hopf, differences, parameter, kind):
+    value = 1.01 * vehicle.with_parameters({"u": U_H}).parameters[parameter]
+    path = vehicle.with_parameters({"u": U_H}).path(parameter)
+    if kind == "hopf":
+        equations = _Hopf(vehicle.exact, path, hopf.X, value, 1.01 * hopf.omega)
+    else:
+        equations = _Fold(vehicle.exact, path, hopf.X, value)
+    slopes_agree(equations, differences)
+
+
+@pytest.mark.parametrize("name", ["b", "n", "d", "q"])
+def test_slopes_where_gains_are_parameters(gained, differences, name):
+    X, path, value = np.array([0.7, 1.3, -0.4, 0.9]), gained.path(name), gained.parameters[name]
+    slopes_agree(_Fold(gained.exact, path, X, value), differences)
+    slopes_agree(_Hopf(gained.exact, path, X, value, 1.3), differences)
 
 
 def test_the_precision_is_put_back(vehicle, hopf):
@@ -227,6 +250,18 @@ def test_a_derived_parameter_moves_what_it_sets(vehicle, hopf):
     assert all(inside(b, x) for b, x in zip(point.dp, direction.tolist(), strict=False))
 
 
+def test_gains_that_are_parameters_move_the_enclosed_equilibrium(gained):
+    """Balls and doubles have the same derivatives by every parameter."""
+    exact, p, X = gained.exact, gained.values, np.array([0.7, 1.3, -0.4, 0.9])
+    for name in ("b", "n", "d", "q"):
+        path = gained.path(name)
+        value = gained.parameters[name]
+        point = EnclosedModel(exact, path).at([arb(x) for x in X.tolist()], arb(value))
+        expected = exact.residual_p(X, p, path.direction(value))
+        found = [float(ball.mid()) for ball in point.equilibrium_p()]
+        np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-14)
+
+
 def test_what_is_undecided_is_an_error():
     wide, right = Ball(arb(0, 1)), Ball(arb(3))
     assert wide < right
@@ -239,6 +274,8 @@ def test_what_is_undecided_is_an_error():
     with pytest.raises(UnboundedError):
         BALLS.sign(wide)
     assert BALLS.sign(Ball(arb(-2))) == -1.0
+    assert BALLS.sign(Ball(arb(2))) == 1.0
+    assert BALLS.sign(Ball(arb(0))) == 0.0
     assert BALLS.where(True, right, wide) is right
     assert BALLS.absorb(Ball(arb(1)) / 0.0, 0.0) == 0.0
 
@@ -270,6 +307,20 @@ def test_a_point_is_solved_again_and_its_shift_told(vehicle, hopf):
     assert found.correction < 1e-10
     with pytest.raises(ConvergenceError, match=r"is elsewhere, at u = 10\.2"):
         resolve(vehicle.exact, vehicle.path("u"), place, hopf.omega, tolerance=1e-4)
+
+
+def test_the_shift_of_a_state_is_relative_to_its_size(parabola):
+    place = Place(X=np.array([2.01]), value=1.0)
+    found = resolve(parabola.exact, parabola.path("mu"), place)
+    assert pytest.approx([2.0]) == found.X
+    assert found.shift == pytest.approx(0.01 / 2.01, rel=1e-6)
+
+
+def test_states_are_near_by_their_size():
+    one = np.array([1.0, -2.0])
+    for scale in (1e-3, 1.0, 1e3):
+        assert near(scale * one, scale * (one + 0.09))
+        assert not near(scale * one, scale * (one + 0.12))
 
 
 def test_counts_on_both_sides_of_a_fold(parabola):

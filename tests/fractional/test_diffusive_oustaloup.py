@@ -87,12 +87,19 @@ def test_a_plain_gain_is_exact(law_of):
         np.testing.assert_allclose(f(1j * np.geomspace(1e-3, 1e3, 9)), -2.5, rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("text", "parameters"),
+    [
+        (VISCOELASTIC, {"ts": 0.8, "te": 1.3, "a": 0.3, "g": 0.7}),
+        ("(n + s**q)/(d + s**q)", {"n": 2.0, "d": 5.0, "q": 0.6}),
+    ],
+    ids=["viscoelastic", "moving gain"],
+)
 @pytest.mark.parametrize("name", REALISATIONS)
-def test_derivatives(law_of, differences, name):
+def test_derivatives(law_of, differences, name, text, parameters):
     """Every matrix of the filter, by every parameter of the law, against differences."""
     realisation = REALISATIONS[name]
-    parameters = {"ts": 0.8, "te": 1.3, "a": 0.3, "g": 0.7}
-    law, field, p = law_of(VISCOELASTIC, **parameters)
+    law, field, p = law_of(text, **parameters)
     for k in range(len(p)):
         unit = np.eye(len(p))[k]
         (direction,) = field.law_directions(p, unit)
@@ -228,3 +235,5 @@ def test_poles_that_coincide_are_refused():
     for poles in ([-1.0, -2.0, -2.0], [-1.0, 2.0], [-1.0, -2.0 + 1j, -2.0 - 1j], [-1.0, np.nan]):
         with pytest.raises(ParameterError, match="m finds a pole of 'Z'"):
             checked_rates(np.array(poles), "m", "Z")
+    with pytest.raises(ParameterError, match=r"a pole of 'Z' at -2 rad/s"):
+        checked_rates(np.array([-1.0, -2.0, -3.0, -2.0]), "m", "Z")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from racs_bif.errors import ConvergenceError, ModelError
+from racs_bif.fractional.static import StaticField
 
 
 def exact_equilibrium(system, **values):
@@ -73,6 +74,22 @@ def test_static_gains_of_two_elements_move_the_equilibrium(system_of, difference
     for dp in np.eye(4):
         slope = differences(lambda t, dp=dp: exact.residual(X, p + t * dp), 0.0, 1e-3)
         np.testing.assert_allclose(exact.residual_p(X, p, dp), slope, atol=1e-10)
+
+
+def test_weights_of_two_elements_move_in_their_own_rows(system_of, differences):
+    system = system_of(
+        {"x": "-w - v"},
+        elements=[("w", "x", "n + s**q"), ("v", "x", "(1 + s**q)/(d + s**(q/2))")],
+        parameters={"n": 2.0, "d": 5.0, "q": 0.6},
+    )
+    exact, p, s = system.exact, system.values, 0.4 + 1.7j
+    for dp in np.eye(3):
+        slope = exact.weights_p(s, p, dp)
+        for side in ("left", "right"):
+            moved = differences(
+                lambda t, side=side, dp=dp: getattr(exact.weights(s, p + t * dp), side), 0.0, 1e-3
+            )
+            np.testing.assert_allclose(getattr(slope, side), moved, rtol=1e-8, atol=1e-10)
 
 
 def newton(function, s):
@@ -207,3 +224,37 @@ def test_an_integrator_keeps_its_output_at_rest(system_of):
     x = system.equilibrium()
     np.testing.assert_allclose(system.exact_point(x, system.values), 1.0, rtol=1e-12)
     assert np.abs(system.field.f(x, system.values)).max() < 1e-12
+
+
+def test_the_static_field_where_gains_are_parameters(system_of, differences):
+    """Every derivative by parameters that stand in the equations and in the laws."""
+    system = system_of(
+        {"x": "b - w - v", "y": "x - v"},
+        elements=[("w", "b*x**2", "n*d + s**q"), ("v", "y", "(b + s**q)/(d*b + s**(q/2))")],
+        parameters={"b": 3.0, "n": 2.0, "d": 5.0, "q": 0.6},
+    )
+    field, p = StaticField(system.exact), system.values
+    rng = np.random.default_rng(0)
+    x, v, _ = rng.normal(size=(3, 4))
+    dp, dq = rng.normal(size=(2, 4)) * [1.0, 1.0, 1.0, 0.0]
+    cases = (
+        (field.f_x(x, p) @ v, lambda t: field.f(x + t * v, p)),
+        (field.f_p(x, p, dp), lambda t: field.f(x, p + t * dp)),
+        (field.f_xp(x, p, v, dp), lambda t: field.f_x(x, p + t * dp) @ v),
+        (field.f_pp(x, p, dp, dq), lambda t: field.f_p(x, p + t * dq, dp)),
+        (field.f_pp(x, p, dp, dp), lambda t: field.f_p(x, p + t * dp, dp)),
+        (field.f_xx(x, p, v, x), lambda t: field.f_x(x + t * x, p) @ v),
+    )
+    for exact, moved in cases:
+        np.testing.assert_allclose(exact, differences(moved, 0.0, 1e-3), rtol=1e-7, atol=1e-9)
+
+
+def test_the_static_field_where_no_gain_moves(system_of, differences):
+    system = system_of(
+        {"x": "b**2 - w"}, elements=[("w", "b*x", "s**q")], parameters={"b": 3.0, "q": 0.6}
+    )
+    field, p = StaticField(system.exact), system.values
+    x, dp = np.array([0.3, 0.4]), np.array([1.0, 0.0])
+    assert field.f_pp(x, p, dp, dp).tolist() == [2.0, 0.0]
+    slope = differences(lambda t: field.f(x, p + t * dp), 0.0, 1e-3)
+    np.testing.assert_allclose(field.f_p(x, p, dp), slope, atol=1e-10)
