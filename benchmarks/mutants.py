@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import signal
 import sys
 import time
@@ -48,9 +49,15 @@ def shown(mutant: Mutant, row: Row, reach: Reach, given: argparse.Namespace) -> 
 
     `row` is what is known of it: tests that it was shown to are left out.
     """
-    tests = [test for group in reach.tests(mutant) for test in group][row.get("shown", 0) :]
+    tests = [test for group in reach.tests(mutant) for test in group]
+    if given.matching:
+        tests = [test for test in tests if re.search(given.matching, test)]
+        left = row["left"] + len(tests)
+    else:
+        tests = tests[row.get("shown", 0) :]
+        left = len(tests)
     batches = _batches(reach, tests, given.budget)
-    row = {"shown": 0} | row | {"outcome": "survived", "by": "", "left": len(tests)}
+    row = {"shown": 0} | row | {"outcome": "survived", "by": "", "left": left}
     begun = time.perf_counter()
     for line in in_child(partial(_show, mutant, batches, given)):
         word, _, rest = line.partition(" ")
@@ -132,7 +139,10 @@ def _todo(
     for mutant in mutants:
         row = known.get(mutant, {})
         survived = row.get("outcome") == "survived"
-        if not row or (given.again and survived):
+        if given.matching:
+            if survived:
+                yield mutant, row
+        elif not row or (given.again and survived):
             yield mutant, {}
         elif given.further and survived and row["left"]:
             yield mutant, row
@@ -177,6 +187,8 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--scratch", type=Path, default=Path("mutants"), help="folder to work in")
     parser.add_argument("--again", action="store_true", help="show the survivors once more")
     more = "show survivors the tests that the budget left out"
+    only = "show survivors the tests, new ones say, whose names match this regular expression"
+    parser.add_argument("--matching", help=only)
     parser.add_argument("--further", action="store_true", help=more)
     parser.add_argument("--table", action="store_true", help="only print what is done")
     given = parser.parse_args()

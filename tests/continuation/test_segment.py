@@ -61,3 +61,11 @@ def test_a_point_that_fails_is_looked_for_a_little_further_along(quintic, fails,
     assert at == pytest.approx(expected, rel=1e-12)
     assert point.parameter == pytest.approx(at - 0.5, abs=1e-3)
     assert quintic.point(at) == (at, point)
+
+
+def test_the_tangent_is_that_of_the_cubic(quintic):
+    quintic.correct(0.5)
+    for at in (0.1, 0.3, 0.6, 0.95):
+        moved = quintic.interpolate(at + 1e-6)[0] - quintic.interpolate(at - 1e-6)[0]
+        tangent = quintic.interpolate(at)[1]
+        np.testing.assert_allclose(tangent[0] / tangent[1], moved[0] / moved[1], rtol=1e-6)

@@ -212,6 +212,14 @@ def test_every_span_ends_exactly(kinds):
         assert column(branch, 1).max() == end
 
 
+@pytest.mark.parametrize("end", [0.0, 1.0])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_given_tangent_at_an_end_of_the_span_is_followed_inwards(line, end, sense):
+    branch = trace(line, [end, end], (0, 1), tangent=[sense, sense])
+    assert {branch.points[0].z[1], branch.points[-1].z[1]} == {0.0, 1.0}
+    assert branch.points[0].z[1] == end
+
+
 def test_given_tangent_switches_branches(pitchfork):
     branch = trace(pitchfork, [0, 0], (-1, 1), tangent=[1, 0], direction=-1)
     x, p = column(branch, 0), column(branch, 1)

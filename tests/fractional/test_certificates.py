@@ -285,6 +285,7 @@ def test_constants_that_were_rounded_are_balls():
     assert (one * 0.5).ball.is_exact()
     tenth = (one * 0.1).ball
     assert tenth.contains(arb(1) / 10)
+    assert tenth.rad() < 1e-15
     assert not tenth.is_exact()
 
 

@@ -76,6 +76,18 @@ def test_static_gains_of_two_elements_move_the_equilibrium(system_of, difference
         np.testing.assert_allclose(exact.residual_p(X, p, dp), slope, atol=1e-10)
 
 
+def test_sparse_and_dense_jacobians_agree(system_of):
+    system = system_of(
+        {"x": "b - w - v", "y": "x*y - v"},
+        elements=[("w", "x**2", "n + s**q"), ("v", "y", "(1 + s**q)/(d + s**(q/2))")],
+        parameters={"b": 3.0, "n": 2.0, "d": 5.0, "q": 0.6},
+    )
+    exact, p = system.exact, system.values
+    X = np.array([0.3, -0.7, 1.1, 0.2])
+    found = exact._sparse_jacobian(X, p).toarray()
+    np.testing.assert_allclose(found, exact.jacobian(X, p), rtol=1e-14)
+
+
 def test_weights_of_two_elements_move_in_their_own_rows(system_of, differences):
     system = system_of(
         {"x": "-w - v"},

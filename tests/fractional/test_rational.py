@@ -69,6 +69,20 @@ def test_derivatives_where_poles_move():
     np.testing.assert_allclose(found, wanted, rtol=1e-10)
 
 
+def test_derivatives_where_some_of_many_poles_move():
+    poles, speeds = np.array([-1.5, -3.0, -4.0, -7.0]), np.array([-0.7, 0.0, 0.9, 0.4])
+    gains, drifts = np.array([1.0, 0.5, -2.0, 3.0]), np.array([0.3, 0.0, 0.1, -0.2])
+    done = Filter(np.diag(poles), np.ones(4), gains, 0.5)
+    slope = _slope("law", done, Filter(np.diag(speeds), np.zeros(4), drifts, 0.1))
+    s = 1j * np.geomspace(0.1, 10.0, 7)
+    apart = s[:, None] - poles
+    wanted = 0.1 + (drifts / apart + gains * speeds / apart**2).sum(axis=1)
+    parts = slope.numerator, slope.denominator
+    top, below = (np.polyval(part.coefficients[::-1], s) for part in parts)
+    found = (top - below * done(s)) / apart.prod(axis=1)
+    np.testing.assert_allclose(found, wanted, rtol=1e-10)
+
+
 def test_filters_that_are_no_quotients_of_ours_are_refused():
     bent = Filter(np.array([[-1.0, 1.0], [0.0, -2.0]]), np.ones(2), np.ones(2), 0.0)
     with pytest.raises(UsageError, match="bent"):

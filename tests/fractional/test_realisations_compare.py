@@ -81,6 +81,7 @@ def test_table(rows):
         assert row.largest_pole < 0.0
         assert row.hopf_error < BOUNDS[name], name
         assert row.error < ERRORS[name], name
+        assert row.omega_error < 2.0 * BOUNDS[name], name
     assert taken["fitted"].states == 8
     assert min(taken, key=lambda name: taken[name].hopf_error) == "fitted"
 

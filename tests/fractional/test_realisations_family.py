@@ -275,3 +275,6 @@ def test_four_and_a_half_rates_a_decade_unless_told():
     for kind in (NonNegative, VectorFitting):
         assert kind(band=(0.2, 60.0)).order == 11
         assert kind(band=(1.0, 2.0)).order == 4
+    assert Fitted(band=(0.1, 60.0)).order == 13
+    assert Fitted(band=(0.1, 60.0)).omega == pytest.approx(6.0**0.5)
+    assert Fitted(band=(1.0, 2.0)).order == 8

@@ -233,3 +233,11 @@ def test_errors_are_those_of_the_roots():
     small, large = (roots_right(ordinary(np.diag([-r])), -1e9) for r in (1e-4, 1e4))
     assert small.errors.max() < 1e-17
     assert large.errors.min() > 1e-13
+
+
+def test_close_roots_beside_a_double_one_are_two():
+    A = np.diag([-1.0, -1.0 - 1e-5, -2.0, -2.0])
+    A[2, 3] = 1.0
+    found = roots_right(ordinary(A), -3.0)
+    assert found.roots == pytest.approx([-1.0, -1.0 - 1e-5, -2.0], abs=1e-10)
+    assert found.multiplicities.tolist() == [1, 1, 2]
