@@ -51,8 +51,10 @@ def test_a_last_point_that_becomes_special_is_told_again(line, caplog):
     event = SpecialPoint("LP", "LP1", 1, np.ones(2), np.ones(2), np.zeros(0, complex), {}, 0.0)
     with caplog.at_level(logging.INFO, logger="racs_bif.continuation"):
         table = Table(line, 7, 1)
-        table.tell([(at(0.0), None), (at(1.0), None)])
-        table.tell([(at(0.0), None), (at(0.9), event), (at(2.0), None)])
+        nodes = [(at(0.0), None), (at(0.9), event), (at(2.0), None)]
+        table.tell([nodes[0], (at(1.0), None)])
+        table.tell(nodes[:2])
+        table.tell(nodes)
     assert [row[1] for row in rows(caplog)] == ["1", "2", "2", "3"]
     assert [row[2:4] for row in rows(caplog) if row[2].isalpha()] == [["LP", "1"]]
     assert [row[-2] for row in rows(caplog)[1:]] == ["1.00E+00", "1.00E-01", "1.10E+00"]

@@ -212,6 +212,21 @@ def test_every_span_ends_exactly(kinds):
         assert column(branch, 1).max() == end
 
 
+@pytest.mark.parametrize(("end", "off"), [(1.0, 1e-13), (0.0, -1e-13)])
+def test_a_start_beyond_the_span_by_rounding_is_at_its_end(line, end, off):
+    branch = trace(line, [end + off, end + off], (0, 1))
+    assert branch.points[0].z[1] == end
+    assert len(branch.points) > 10
+
+
+def test_a_start_on_a_fold_far_from_zero(kinds):
+    problem = kinds.Scalar(
+        lambda x, p: p - (x - 5.0) ** 2, lambda x, p: -2.0 * (x - 5.0), lambda x, p: 1.0
+    )
+    branch = trace(problem, [5.0, 0.0], (-1, 1), [kinds.Fold()])
+    assert sorted(branch.points[k].z[0] for k in (0, -1)) == pytest.approx([4.0, 6.0], rel=1e-9)
+
+
 @pytest.mark.parametrize("end", [0.0, 1.0])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_given_tangent_at_an_end_of_the_span_is_followed_inwards(line, end, sense):
