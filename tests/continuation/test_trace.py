@@ -331,6 +331,8 @@ def test_target_just_short_of_a_fold_where_an_unknown_goes_on(kinds):
 
     problem = Turning(None, None, None, spectral=False)
     branch = trace(problem, [1.0, 6.0, 1.0], (-1, 2), targets=[1e-6])
+    assert [special.parameter for special in branch.special] == [1e-6, 1e-6]
+    assert {point.parameter for point in (branch.points[0], branch.points[-1])} == {2.0}
     np.testing.assert_allclose([s.z[0] for s in branch.special], [-1e-3, 1e-3], rtol=1e-9)
 
 

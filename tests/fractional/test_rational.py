@@ -26,6 +26,14 @@ def test_a_filter_of_any_kind_as_a_quotient(law_of, text, parameters):
     assert made.name == law.name
 
 
+def test_a_filter_whose_states_are_coupled(law_of):
+    law = law_of("1/(1 + s**q)", q=0.5)[0]
+    A = np.array([[-1.0, 2.0, 0.0], [0.0, -3.0, 1.0], [0.5, 0.0, -5.0]])
+    done = Filter(A, np.array([1.0, 0.5, 2.0]), np.array([0.3, 1.0, -0.4]), 0.7)
+    s = 1j * np.geomspace(1e-2, 1e2, 30)
+    np.testing.assert_allclose(rational(law, done)(s), done(s), rtol=1e-10)
+
+
 def test_derivatives_of_the_quotient(system_of, differences):
     realisation = Diffusive(band=(0.1, 10.0), order=5)
     elements, parameters = [("Z", "0", "k + 1/s**q")], {"q": 0.4, "k": 2.0}

@@ -278,3 +278,11 @@ def test_four_and_a_half_rates_a_decade_unless_told():
     assert Fitted(band=(0.1, 60.0)).order == 13
     assert Fitted(band=(0.1, 60.0)).omega == pytest.approx(6.0**0.5)
     assert Fitted(band=(1.0, 2.0)).order == 8
+
+
+def test_matsuda_goes_through_its_points_to_rounding():
+    """Poles as eigenvalues are not sharp enough: they are polished."""
+    settings = Matsuda(band=(1e-2, 1e3), sections=9)
+    power, points = settings.power(0.5), np.geomspace(1e-2, 1e3, 18)
+    values = power.constant + (power.gains * power.rates / (points[:, None] + power.rates)).sum(1)
+    np.testing.assert_allclose(values, points**0.5, rtol=5e-12)
