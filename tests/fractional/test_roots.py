@@ -241,3 +241,9 @@ def test_close_roots_beside_a_double_one_are_two():
     found = roots_right(ordinary(A), -3.0)
     assert found.roots == pytest.approx([-1.0, -1.0 - 1e-5, -2.0], abs=1e-10)
     assert found.multiplicities.tolist() == [1, 1, 2]
+
+
+def test_the_order_of_a_root_at_zero_below_roots_of_very_different_sizes():
+    found = roots_right(ordinary(np.diag([0.0, -1e-3, -1e6])), -1e9)
+    assert found.zero_order == pytest.approx(1.0, abs=0.02)
+    assert found.roots == pytest.approx([-1e-3, -1e6], rel=1e-9)
