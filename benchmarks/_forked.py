@@ -35,7 +35,8 @@ AT_WORST: Final = 900
 """Seconds after which a child is ended that waits for something."""
 MEMORY: Final = 6 * 2**30
 """Bytes a child may have: a loop that fills the memory is stopped."""
-INTERNAL_ERROR: Final = 3
+BROKEN: Final = (3, 4)
+"""Exit codes of pytest itself: an error in it, and fixtures that cannot be imported."""
 ALWAYS: Final = (
     *("-q", "-x", "--tb=no", "--no-header", "-p", "no:cacheprovider", "-p", "no:xdist"),
     *("--assert=plain", "-p", "no:cov", "-o", "addopts=--import-mode=importlib"),
@@ -152,8 +153,8 @@ def ready(names: Iterable[str]) -> None:
 def pytest(files: Iterable[str], watch: Watch) -> int:
     """Run the tests of some files in this process, which is a child; return pytest's exit code."""
     code = int(import_module("pytest").main([*ALWAYS, *files], plugins=[watch]))
-    if code == INTERNAL_ERROR:
-        watch.tell("failed pytest itself")
+    if code in BROKEN:
+        watch.tell("failed before its tests")
     return code
 
 

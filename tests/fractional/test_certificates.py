@@ -310,6 +310,13 @@ def test_a_point_is_solved_again_and_its_shift_told(vehicle, hopf):
         resolve(vehicle.exact, vehicle.path("u"), place, hopf.omega, tolerance=1e-4)
 
 
+def test_the_shift_of_the_frequency_is_relative_to_it(vehicle, hopf):
+    place = Place(X=hopf.X, value=hopf.value)
+    found = resolve(vehicle.exact, vehicle.path("u"), place, 1.002 * hopf.omega)
+    assert found.omega == pytest.approx(hopf.omega, rel=1e-12)
+    assert found.shift == pytest.approx(2e-3, rel=1e-3)
+
+
 def test_the_shift_of_a_state_is_relative_to_its_size(parabola):
     place = Place(X=np.array([2.01]), value=1.0)
     found = resolve(parabola.exact, parabola.path("mu"), place)

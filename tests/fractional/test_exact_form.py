@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from racs_bif.equilibria.hopf_form import hopf_form
 from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.fractional.exact_form import exact_form
 from racs_bif.fractional.exact_hopf import solve_hopf
+from racs_bif.fractional.roots import characteristic_roots
 from racs_bif.shelf.load import system_of
 
 
@@ -24,6 +27,23 @@ def test_the_vehicle_shimmies_as_computed_by_harmonic_balance():
     form = form_of(rb.load_model("racs"), "u", 10.2, 9.52)
     assert form.curvature(2) == pytest.approx(50.3487, abs=5e-5)  # model.md, section 4: kappa
     assert form.l1 < 0.0
+
+
+@pytest.mark.parametrize("name", ["u", "C_s", "alpha", "gamma", "tau_eps"])
+def test_the_speed_of_the_root_is_that_of_the_exact_roots(name):
+    """Also by parameters that stand in the law."""
+    system = rb.load_model("racs")
+    path, X = system.path("u"), np.zeros(5)
+    hopf = solve_hopf(system.exact, path, X, 10.2, 9.52)
+    system = system.with_parameters({"u": hopf.value})
+    value = system.parameters[name]
+    form = exact_form(system.exact, system.path(name), replace(hopf, value=value))
+    step = 1e-4 * value
+    ahead, behind = (
+        characteristic_roots(system.with_parameters({name: value + h})).roots[0]
+        for h in (step, -step)
+    )
+    assert form.mu_slope == pytest.approx((ahead - behind) / (2.0 * step), rel=1e-5)
 
 
 def test_the_brusselator_has_the_textbook_coefficient():
