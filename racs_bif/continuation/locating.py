@@ -79,7 +79,7 @@ class Locator:
             Its values at the ends, of opposite signs.
         """
         detectors = self._builder.detectors
-        if place < len(detectors) and detectors[place].dismisses(segment.a, segment.b):
+        if detectors[place].dismisses(segment.a, segment.b):
             return None
         seen = {0.0: before, 1.0: after}
 

@@ -47,6 +47,7 @@ def test_each_reason_refuses_a_step_and_shortens_it(step, reason):
         ({"contraction": CONTRACTION}, 0.7),
         ({"iterations": 8}, 0.5),
         ({"iterations": 5}, 0.8),
+        ({"iterations": 4}, 2.0),
     ],
 )
 def test_a_good_step_says_how_long_the_next_may_be(step, factor):

@@ -67,6 +67,15 @@ def test_without_detectors_nothing_is_checked(kinds):
     assert branch.message == ""
 
 
+def test_a_sign_change_that_a_detector_dismisses_is_no_event(kinds, line):
+    class Choosy(kinds.Given):
+        def dismisses(self, before, after):
+            return before.z[1] < 0.5 < after.z[1] or before.z[1] > 0.5
+
+    branch = trace(line, [0, 0], (0, 1), [Choosy(lambda z: (z[1] - 0.3) * (z[1] - 0.7))])
+    assert found(branch) == pytest.approx([0.3], abs=1e-9)
+
+
 def test_event_of_another_kind_is_dropped_and_explains_nothing(kinds):
     class Picky(kinds.Hopf):
         def data(self, problem, point):

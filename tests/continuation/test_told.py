@@ -41,6 +41,7 @@ def test_the_table_says_which_way_and_how_many_are_unstable(kinds, fold, caplog)
         trace(blind, [0.0, 0.0], (0.0, 1.0))
     assert caplog.messages[0].endswith("in p, forwards")
     assert {row[5] for row in rows(caplog)} == {"-"}
+    assert 0 < int(first[0]) < int(rows(caplog)[0][0])
 
 
 def test_a_last_point_that_becomes_special_is_told_again(line, caplog):

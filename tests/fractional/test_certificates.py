@@ -13,7 +13,7 @@ from racs_bif.fractional.enclosed import EnclosedModel
 from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.fractional.intervals import BALLS, Ball, BallFunctions, UnboundedError, finite
-from racs_bif.fractional.krawczyk import NoneThereError, _above
+from racs_bif.fractional.krawczyk import Box, NoneThereError, _above
 from racs_bif.fractional.proofs import _Fold, _Hopf, prove_fold, prove_hopf
 
 U_H, OMEGA_H = 10.2, 9.5200832  # model.md, section 4
@@ -372,6 +372,14 @@ def test_nothing_is_proved_of_a_function_that_is_called():
     system = system_of(model)
     with pytest.raises(UsageError, match="nothing can be proved of equations that call a Python"):
         prove_hopf(system.exact, system.path("mu"), np.zeros(2), 0.0, 1.0)
+
+
+def test_a_box_holds_its_faces():
+    box = Box(("a", "b"), np.array([1.0, 5.0]), np.array([0.5, 1.0]), np.zeros(2), np.ones(2))
+    assert box.contains("a", 1.5)
+    assert box.contains("a", 0.5)
+    assert not box.contains("a", 1.6)
+    assert box.width("b") == 1.0
 
 
 def test_bounds_are_rounded_outwards():

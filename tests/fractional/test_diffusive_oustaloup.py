@@ -232,7 +232,13 @@ def test_five_rates_a_decade_unless_told():
 
 def test_poles_that_coincide_are_refused():
     np.testing.assert_array_equal(checked_rates(np.array([-3.0, -1.0]), "m", "Z"), [1.0, 3.0])
-    for poles in ([-1.0, -2.0, -2.0], [-1.0, 2.0], [-1.0, -2.0 + 1j, -2.0 - 1j], [-1.0, np.nan]):
+    for poles in (
+        [-1.0, 0.0],
+        [-1.0, -2.0, -2.0],
+        [-1.0, 2.0],
+        [-1.0, -2.0 + 1j, -2.0 - 1j],
+        [-1.0, np.nan],
+    ):
         with pytest.raises(ParameterError, match="m finds a pole of 'Z'"):
             checked_rates(np.array(poles), "m", "Z")
     with pytest.raises(ParameterError, match=r"a pole of 'Z' at -2 rad/s"):

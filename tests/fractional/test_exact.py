@@ -223,6 +223,18 @@ def test_a_singular_jacobian_at_the_guess(system_of):
         system.equilibrium()
 
 
+@pytest.mark.parametrize(
+    ("equations", "message"),
+    [
+        ({"x": "x**2 + 1"}, r"do not change with the states at the guess"),
+        ({"x": "x**2 + y", "y": "y*(1 + x)"}, r"equilibrium with a singular Jacobian"),
+    ],
+)
+def test_what_is_wrong_with_a_singular_guess_is_said(system_of, equations, message):
+    with pytest.raises(ConvergenceError, match=message):
+        system_of(equations).equilibrium()
+
+
 def test_polish_and_exact_point_are_inverse(vehicle):
     system = vehicle.with_parameters({"u": 20.0, "alpha": 0.45})
     X = system.exact.equilibrium(np.zeros(5), system.values)

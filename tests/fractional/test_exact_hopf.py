@@ -2,6 +2,7 @@
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -9,7 +10,7 @@ from scipy.optimize import brentq
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
-from racs_bif.fractional.realised_hopf import solve_realised_hopf
+from racs_bif.fractional.realised_hopf import _eigenpair, solve_realised_hopf
 
 # model.md, section 4: one parameter changed -> u_H and omega_H of the exact model
 VEHICLE = {
@@ -240,3 +241,24 @@ def test_a_parameter_that_moves_no_eigenvalue_has_no_hopf_point(system_of):
     )
     with pytest.raises(ConvergenceError, match="no Hopf point of the realised system near mu = 1"):
         solve_realised_hopf(system, system.path("mu"), np.array([0.3, 0.3]), 1.0, 0.0)
+
+
+def test_an_eigenvalue_of_a_stiff_matrix_is_sharp():
+    """The eigenvalues that are found first are exact to the largest entries only."""
+    A = np.array(
+        [
+            [0.1, 10.0, 1e4, 0.0],
+            [-10.0, 0.1, 0.0, 3e3],
+            [3e5, 1e5, -1e10, 2e7],
+            [2e6, -1e5, 1e8, -3e9],
+        ]
+    )
+    with mpmath.workdps(50):
+        values = [complex(value) for value in mpmath.eig(mpmath.matrix(A.tolist()))[0]]
+    expected = min(values, key=lambda value: abs(value - 10j))
+    assert expected.imag > 5.0
+    assert np.abs(np.linalg.eigvals(A) - expected).min() > 1e-11
+    mu, left, right = _eigenpair(A, 10j)
+    assert abs(mu - expected) < 1e-13 * abs(expected)
+    assert complex(np.vdot(left, right)) == pytest.approx(1.0, rel=1e-12)
+    np.testing.assert_allclose((A @ right)[:2], mu * right[:2], rtol=1e-9)

@@ -235,6 +235,10 @@ def test_errors_are_those_of_the_roots():
     assert large.errors.min() > 1e-13
 
 
+def test_at_zero_only_where_a_root_is():
+    assert not roots_right(ordinary(-np.eye(2)), -2.0).at_zero
+
+
 def test_close_roots_beside_a_double_one_are_two():
     A = np.diag([-1.0, -1.0 - 1e-5, -2.0, -2.0])
     A[2, 3] = 1.0
