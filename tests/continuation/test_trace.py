@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from racs_bif.continuation import StepSettings, Stopped, trace
+from racs_bif.continuation import Problem, StepSettings, Stopped, trace
 from racs_bif.errors import ConvergenceError, UsageError
 
 LOCATED = 3e-11
@@ -217,6 +217,36 @@ def test_a_start_beyond_the_span_by_rounding_is_at_its_end(line, end, off):
     branch = trace(line, [end + off, end + off], (0, 1))
     assert branch.points[0].z[1] == end
     assert len(branch.points) > 10
+
+
+class Two(Problem):
+    """Two unknowns x and y, each with an equation of its own in p."""
+
+    name = "two"
+    parameter = "p"
+
+    def __init__(self, x, y, y_y, y_p):
+        self.x, self.y, self.y_y, self.y_p = x, y, y_y, y_p
+
+    def residual(self, z):
+        return np.array([z[0] - self.x, self.y(z[1], z[2])])
+
+    def jacobian(self, z):
+        return np.array([[1.0, 0.0, 0.0], [0.0, self.y_y(z[1], z[2]), self.y_p(z[1], z[2])]])
+
+
+def test_a_start_beyond_the_span_with_other_unknowns_about_is_at_its_end():
+    problem = Two(0.3, lambda y, p: y - 7.0, lambda y, p: 1.0, lambda y, p: 0.0)
+    branch = trace(problem, [0.3, 7.0, 1.0 + 1e-13], (0, 1))
+    assert branch.points[0].parameter == 1.0
+    assert branch.points[-1].parameter == 0.0
+
+
+def test_one_of_two_unknowns_runs_to_infinity():
+    problem = Two(1.0, lambda y, p: y * (1.0 - p) - 1.0, lambda y, p: 1.0 - p, lambda y, p: -y)
+    branch = trace(problem, [1.0, 1.0, 0.0], (-1, 2), direction=1)
+    assert branch.stopped is Stopped.INFINITY
+    assert branch.points[-1].parameter == pytest.approx(1.0, abs=1e-4)
 
 
 def test_a_start_on_a_fold_far_from_zero(kinds):

@@ -342,6 +342,18 @@ def test_counts_on_both_sides_of_a_fold(parabola):
         assert exact_count(exact, path, place).unstable == unstable
 
 
+def test_beside_a_fold_of_two_states(system_of):
+    equations = {"x": "mu-1-(x-2)**2", "y": "x+3-y"}
+    system = system_of(equations, parameters={"mu": 2.0}, guess={"x": 3.0, "y": 6.0})
+    path, exact = system.path("mu"), system.exact
+    fold = Place(X=np.array([2.0, 5.0]), value=1.0)
+    for end in (np.array([3.0, 6.0]), np.array([1.0, 4.0])):
+        place = beside(exact, path, fold, Place(X=end, value=2.0))
+        assert place.value == pytest.approx(1.0 + (place.X[0] - 2.0) ** 2, abs=1e-10)
+        assert place.X[1] == pytest.approx(place.X[0] + 3.0, abs=1e-10)
+        assert (place.X[0] - 2.0) * (end[0] - 2.0) > 0.0
+
+
 def test_a_count_where_no_equilibrium_is_refused(parabola):
     with pytest.raises(ConvergenceError, match=r"elsewhere, its states differ by 1\.0e\+00"):
         exact_count(parabola.exact, parabola.path("mu"), Place(X=np.array([4.0]), value=2.0))
