@@ -304,3 +304,16 @@ def test_outputs_of_an_element_that_passes_its_input_on(system_of, differences):
     np.testing.assert_allclose(field.outputs_along(x, p, v), slope, rtol=1e-9)
     both = field.outputs(np.column_stack([rest, x]), p)
     np.testing.assert_allclose(both.T, [field.outputs(rest, p), field.outputs(x, p)], rtol=1e-13)
+
+
+def test_outputs_tell_where_there_are_no_states(system_of, vehicle):
+    elements = [("x", "1 - x + y", "s**(-q)"), ("y", "x - 2*y", "(1 + s**q)/s**q")]
+    field = system_of({}, elements=elements, parameters={"q": 0.6}).field
+    p = np.array([0.6])
+    rng = np.random.default_rng(1)
+    x, v = rng.normal(size=(2, len(field.states)))
+    assert field.stateless
+    np.testing.assert_array_equal(field.telling(x, p, v, 0), field.outputs_along(x, p, v))
+    x, v = (state(vehicle, seed)[0] for seed in (0, 1))
+    assert not vehicle.field.stateless
+    np.testing.assert_array_equal(vehicle.field.telling(x, vehicle.values, v, 4), v[:4])
