@@ -219,6 +219,15 @@ def test_a_start_beyond_the_span_by_rounding_is_at_its_end(line, end, off):
     assert len(branch.points) > 10
 
 
+def test_a_branch_that_is_put_in_order_keeps_its_arclength(line):
+    branch = trace(line, [0.5, 0.5], (0, 1), tangent=[-1.0, -1.0])
+    length = np.array([point.arclength for point in branch.points])
+    assert (branch.points[0].parameter, branch.points[-1].parameter) == (0.0, 1.0)
+    assert length[0] == 0.0
+    np.testing.assert_allclose(np.diff(length) / np.diff(column(branch, 1)), 2.0**0.5, rtol=0.5)
+    assert all(point.tangent[1] > 0.0 for point in branch.points)
+
+
 class Two(Problem):
     """Two unknowns x and y, each with an equation of its own in p."""
 
