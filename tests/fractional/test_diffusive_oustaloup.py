@@ -227,6 +227,7 @@ def test_filters_are_smooth_in_the_orders(law_of, name):
 
 def test_five_rates_a_decade_unless_told():
     assert Diffusive(band=(0.1, 60.0)).order == 14
+    assert Diffusive(band=(1.0, 2.0), order=2).order == 2
     assert Diffusive(band=(1.0, 2.0)).order == 4
 
 
