@@ -275,10 +275,13 @@ def test_the_static_field_where_gains_are_parameters(system_of, differences):
 
 def test_the_static_field_where_no_gain_moves(system_of, differences):
     system = system_of(
-        {"x": "b**2 - w"}, elements=[("w", "b*x", "s**q")], parameters={"b": 3.0, "q": 0.6}
+        {"x": "b**2 - w"},
+        elements=[("w", "b*x", "n + s**q")],
+        parameters={"b": 3.0, "n": 2.0, "q": 0.6},
     )
     field, p = StaticField(system.exact), system.values
-    x, dp = np.array([0.3, 0.4]), np.array([1.0, 0.0])
+    x, dp, dn = np.array([0.3, 0.4]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
     assert field.f_pp(x, p, dp, dp).tolist() == [2.0, 0.0]
+    assert field.f_pp(x, p, dp, dn).tolist() == field.f_pp(x, p, dn, dp).tolist() == [0.0, 0.3]
     slope = differences(lambda t: field.f(x, p + t * dp), 0.0, 1e-3)
     np.testing.assert_allclose(field.f_p(x, p, dp), slope, atol=1e-10)

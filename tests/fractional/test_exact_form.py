@@ -46,6 +46,26 @@ def test_the_speed_of_the_root_is_that_of_the_exact_roots(name):
     assert form.mu_slope == pytest.approx((ahead - behind) / (2.0 * step), rel=1e-5)
 
 
+def test_a_nonlinear_input_of_an_element_counts_by_its_law(system_of):
+    """An element of integer order is an ordinary equation: w = 2 e - z, z' = e - z."""
+    states = {"x": "mu*x - y - x**3 + 0.2*w", "y": "x + y**2"}
+    whole = system_of(
+        states, elements=[("w", "y + x**2 - x**3", "(1 + 2*s)/(1 + s)")], parameters={"mu": 0.0}
+    )
+    plain = {k: v.replace("w", "(2*(y + x**2 - x**3) - z)") for k, v in states.items()}
+    plain = system_of(plain | {"z": "y + x**2 - x**3 - z"}, parameters={"mu": 0.0})
+    forms = []
+    for system in (whole, plain):
+        path = system.path("mu")
+        hopf = solve_hopf(system.exact, path, np.zeros(3), 0.0, 0.8)
+        forms.append(exact_form(system.exact, path, hopf))
+    one, other = forms
+    assert one.omega == pytest.approx(other.omega, rel=1e-10)
+    assert one.mu_slope == pytest.approx(other.mu_slope, rel=1e-9)
+    assert one.curvature(0) == pytest.approx(other.curvature(0), rel=1e-9)
+    assert one.curvature(1) == pytest.approx(other.curvature(1), rel=1e-9)
+
+
 def test_the_brusselator_has_the_textbook_coefficient():
     model = rb.model_from_strings(
         "brusselator",

@@ -79,3 +79,5 @@ def test_up_to_the_largest_number():
     z = complex(705.0, 1.0) ** 0.5
     expected = 2.0 * math.exp(705.0) * complex(math.cos(1.0), math.sin(1.0))
     assert complex(mittag_leffler(0.5, 1.0, z)) == pytest.approx(expected, rel=1e-10)
+    expected *= complex(705.0, 1.0) ** 0.25
+    assert complex(mittag_leffler(0.5, 0.75, z)) == pytest.approx(expected, rel=1e-10)
