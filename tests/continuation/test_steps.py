@@ -100,6 +100,7 @@ def test_only_the_parameter_bends_a_branch():
     small = scaling.bend(before, after)
     after[-1] = 0.1
     assert scaling.bend(before, after) == pytest.approx(2.0 * small)
+    assert Scaling(4.0, np.ones(3)).bend(before, after) == pytest.approx(small)
 
 
 def test_which_eigenvalues_are_unstable_is_asked_one_by_one(line):
