@@ -55,6 +55,7 @@ def test_a_last_point_that_becomes_special_is_told_again(line, caplog):
         nodes = [(at(0.0), None), (at(0.9), event), (at(2.0), None)]
         table.tell([nodes[0], (at(1.0), None)])
         table.tell(nodes[:2])
+        assert [row[1] for row in rows(caplog)] == ["1", "2", "2"]
         table.tell(nodes)
     assert [row[1] for row in rows(caplog)] == ["1", "2", "2", "3"]
     assert [row[2:4] for row in rows(caplog) if row[2].isalpha()] == [["LP", "1"]]

@@ -279,6 +279,8 @@ def test_four_and_a_half_rates_a_decade_unless_told():
     assert Fitted(band=(0.1, 60.0)).omega == pytest.approx(6.0**0.5)
     assert Fitted(band=(1.0, 2.0)).order == 8
     assert Aaa(band=(1.0, 2.0), order=1).order == 1
+    with pytest.raises(UsageError, match="spread inf"):
+        Fitted(band=(1.0, 2.0), spread=np.inf)
     assert Aaa(band=(0.1, 1e4)).order == 15
 
 
