@@ -60,6 +60,8 @@ LEAST, MOST, FADED = 1 << 10, 1 << 14, 1e-6
 """Steps of a period that orbits are checked with, and how small their last harmonics must be."""
 ON_AXIS: Final = 1e-6
 """By how much, relative, an exact root may differ from i omega of a Hopf curve."""
+AT_REST: Final = 1e-9
+"""By how much an equilibrium may miss the exact equations, relative to the terms."""
 PLACES: Final = 4
 """Places of a chart at which roots are counted again."""
 _UNEXPECTED: Final = "UNEXPECTED"
@@ -209,15 +211,29 @@ def _curve(system: System, hopf: SpecialPoint) -> tuple[Branch, str, str]:
     for k in np.unique(np.linspace(0, len(curve) - 1, PLACES).astype(int)):
         place = dict(zip(curve.parameters, map(float, curve.values[k]), strict=True))
         at, omega = system.with_parameters(place), float(curve.measures["omega"][k])
-        guess = np.zeros(system.exact.size)
-        guess[: len(system.states)] = curve.states[k, : len(system.states)]
-        X = at.exact.equilibrium(guess, at.values)
+        where = ", ".join(f"{name} = {value:.6g}" for name, value in place.items())
+        X = _at_rest(at, curve.states[k, : len(system.states)])
+        left = np.abs(at.exact.residual(X, at.values))
+        if np.any(left > AT_REST * (np.abs(at.exact.jacobian(X, at.values)) @ np.abs(X))):
+            return curve, _UNEXPECTED, f"no exact equilibrium at {where}"
         ch = Characteristic.of_model(at.exact, X, at.values)
         root = np.exp(polish(ch, np.log(np.array([1j * omega])))[0])[0]
         if not (curve.measures["neutral"][k] or abs(root - 1j * omega) < ON_AXIS * omega):
-            where = ", ".join(f"{name} = {value:.6g}" for name, value in place.items())
             return curve, _UNEXPECTED, f"no exact root at i {omega:.6g} at {where}"
     return curve, "early" if curve.early else "ok", curve.stopped
+
+
+def _at_rest(system: System, y: np.ndarray) -> np.ndarray:
+    """Return states and the outputs that elements have at rest.
+
+    Nothing is solved: beside a fold Newton's method could not better it.
+    """
+    ny, p = len(y), system.values
+    X = np.append(y, np.zeros(system.exact.size - ny))
+    inputs = system.compiled.core(X, system.compiled.padded(p))[ny:]
+    gains = [law.static_gain for law in system.exact.laws(p)]
+    X[ny:] = gains * inputs
+    return X
 
 
 def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, str]:
