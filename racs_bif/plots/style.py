@@ -31,7 +31,7 @@ _SETTINGS: Final[dict[str, object]] = {
     "axes.linewidth": 0.6,
     "axes.grid": False,
     "axes.formatter.useoffset": False,
-    "axes.formatter.limits": (-4, 5),
+    "axes.formatter.limits": (-4, 6),
     "axes.unicode_minus": True,
     "xtick.direction": "in",
     "ytick.direction": "in",

@@ -16,7 +16,7 @@ from racs_bif.errors import ConvergenceError, ParameterError
 from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.units import after, frequency_unit
 from racs_bif.verbs.assemble import interrupted
-from racs_bif.verbs.contradictions import contradiction, exact_hopf_near
+from racs_bif.verbs.contradictions import contradiction, refused
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -171,8 +171,7 @@ def _beyond(system: System, problem: EquilibriumProblem, found: Trace) -> tuple[
 
 def _far(system: System, problem: EquilibriumProblem, found: Trace) -> str:
     """Say which Hopf point is farther from the exact one than `certify` accepts, if any."""
-    for point in found.special:
-        if point.label == "H" and exact_hopf_near(system, problem, found, point) is None:
-            name, value = problem.parameter, float(point.z[-1])
-            return f"the Hopf point at {name} = {value:.6g} was too far from the exact one"
+    for point in refused(system, problem, found):
+        name, value = problem.parameter, float(point.z[-1])
+        return f"the Hopf point at {name} = {value:.6g} was too far from the exact one"
     return ""

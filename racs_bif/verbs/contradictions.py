@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
@@ -81,6 +82,21 @@ def exact_hopf_near(
         return None
 
 
+def refused(system: System, problem: EquilibriumProblem, found: Trace) -> Iterator[SpecialPoint]:
+    """Yield the Hopf points of a branch that the exact equations do not have, or elsewhere."""
+    for point in found.special:
+        if point.label == "H" and exact_hopf_near(system, problem, found, point) is None:
+            yield point
+
+
+def without(found: Trace, points: Sequence[SpecialPoint]) -> Trace:
+    """Return a branch on which some special points are ordinary ones."""
+    gone = {point.index for point in points}
+    kept = [replace(p, label="") if k in gone else p for k, p in enumerate(found.points)]
+    special = [point for point in found.special if point.index not in gone]
+    return replace(found, points=kept, special=special)
+
+
 def _at_fold(found: Trace, *values: float) -> bool:
     """Say whether values of the parameter are a fold's but for rounding."""
     folds = [float(point.z[-1]) for point in found.special if point.label in _STATIC]
@@ -100,15 +116,27 @@ def _shifted(system: System, problem: EquilibriumProblem, found: Trace, place: P
     return False
 
 
-def contradicted(system: System, problem: EquilibriumProblem, points: Sequence[Point]) -> Flags:
-    """Return at which points (npoints,) the exact equations have another number, or none known."""
-    return np.array(
+def contradicted(
+    system: System, problem: EquilibriumProblem, found: Trace, gone: Sequence[SpecialPoint]
+) -> Flags:
+    """Return at which points (npoints,) the exact equations have another number, or none known.
+
+    The points beside special points that are `gone` are among them: what they told is not known.
+    """
+    places = _as_places(system, problem, found.points)
+    wrong = np.array(
         [
             not point.label and _exact_count(system, problem, place) != point.unstable
-            for point, place in zip(points, _as_places(system, problem, points), strict=True)
+            for point, place in zip(found.points, places, strict=True)
         ],
         dtype=bool,
     )
+    ordinary = np.array([not point.label for point in found.points])
+    for point in gone:
+        before, after = ordinary[: point.index], ordinary[point.index :]
+        wrong[np.flatnonzero(before)[-1:]] = True
+        wrong[point.index + np.flatnonzero(after)[:2]] = True
+    return wrong
 
 
 def _as_places(

@@ -24,7 +24,7 @@ from racs_bif.symbolic.model import Model, find_parameter
 from racs_bif.units import after, frequency_unit
 from racs_bif.verbs import assemble
 from racs_bif.verbs.bands import Remark, on_a_band_that_holds
-from racs_bif.verbs.contradictions import contradicted
+from racs_bif.verbs.contradictions import contradicted, refused, without
 from racs_bif.verbs.origin import Origin
 
 if TYPE_CHECKING:
@@ -222,16 +222,22 @@ def as_branch(
 ) -> Branch:
     """Return a traced branch as a result, its Hopf points checked on the exact model.
 
-    On a band that leaves contradictions stability is not told where these are.
+    On a band that leaves contradictions stability is not told where these are, and Hopf points that
+    the exact equations do not have are left out.
     """
     sentence, early = assemble.stopped(found)
+    gone = [] if remark.settled else list(refused(system, problem, found))
+    found = without(found, gone)
     sentence += _beyond_band(system, found) + remark.text
     columns = assemble.columns(found.points)
     if not remark.settled:
-        early, wrong = True, contradicted(system, problem, found.points)
+        early, wrong = True, contradicted(system, problem, found, gone)
         columns["stable"] = columns["stable"] & ~wrong
         columns["unstable"] = np.where(wrong, -1, columns["unstable"])
         sentence += f" Stability is left out at {np.count_nonzero(wrong)} points."
+    if gone:
+        names = ", ".join(f"{p.name} at {problem.parameter} = {p.z[-1]:.6g}" for p in gone)
+        sentence += f" Left out, as the exact equations have no such Hopf point: {names}."
     named = [(raw, _special(system, problem, raw, span)) for raw in found.special]
     states = np.array([p.z[:-1] for p in found.points])
     return Branch(

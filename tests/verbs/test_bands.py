@@ -7,7 +7,7 @@ import pytest
 
 import racs_bif as rb
 from racs_bif.shelf.load import system_of
-from racs_bif.verbs import bands
+from racs_bif.verbs import bands, contradictions
 
 SLOW = {
     # the relaxation of a soft solid in minutes: its Hopf point is far below the model's own band
@@ -74,6 +74,21 @@ def test_where_no_band_settles_it_stability_is_not_told(monkeypatch):
     assert not any("unstable roots, the exact model has" in check.finding for check in failures)
 
 
+def test_where_no_band_settles_it_refused_hopf_points_are_left_out():
+    """Beside a fold of this vehicle the realisation has a Hopf point, the exact equations none."""
+    branch = rb.continue_equilibria(_vehicle(1715), "u", (9.6, 9.8))
+    assert [point.label for point in branch.special] == ["LP"]
+    assert "Left out, as the exact equations have no such Hopf point: H1 at u = 9.728" in (
+        branch.stopped
+    )
+    assert branch.early
+    assert "H" not in branch.labels
+    # what is told beside it is known
+    findings = [check.finding for check in rb.certify(branch, "complete").failures]
+    assert findings
+    assert all("no stability" in text or "-1 reported" in text for text in findings)
+
+
 def _vehicle(index):
     path = Path(__file__).parents[2] / "benchmarks" / "random_vehicles.py"
     variant, values = runpy.run_path(str(path))["draw"](index)
@@ -125,7 +140,7 @@ def test_the_order_is_raised_for_a_hopf_point_far_from_the_exact_one():
 
 
 def test_the_order_stays_where_no_exact_hopf_point_is_near(slow, monkeypatch):
-    monkeypatch.setattr(bands, "exact_hopf_near", lambda *_: None)
+    monkeypatch.setattr(contradictions, "exact_hopf_near", lambda *_: None)
     branch = rb.continue_equilibria(slow, "mu", (-0.01, 0.01))
     assert "order was raised to 3.38 times its default" in branch.stopped
     assert not branch.early
