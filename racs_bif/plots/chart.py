@@ -146,6 +146,7 @@ def _draw(chart: Chart, ax: Axes, scale: Scale | None) -> ScalarMappable | None:
     first, second = chart.parameters
     ax.set_xlabel(axis_label(first, chart.system.unit(first)))
     ax.set_ylabel(axis_label(second, chart.system.unit(second)))
+    ax.yaxis.set_offset_position("right")  # the legend is on the left
     if chart.nominal is not None:
         ax.plot(
             *chart.nominal[:, None],
