@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
 Spectrum = NDArray[np.complex128]
+
+_FEW: Final = 5
+"""Of so few eigenvalues all orders are tried."""
 
 
 def match(before: Spectrum, after: Spectrum) -> NDArray[np.intp]:
@@ -17,6 +23,10 @@ def match(before: Spectrum, after: Spectrum) -> NDArray[np.intp]:
     nearest: NDArray[np.intp] = distance.argmin(axis=1)
     if len(np.unique(nearest)) == len(before):
         return nearest
+    if len(before) == len(after) <= _FEW:
+        orders = np.array(list(permutations(range(len(after)))), dtype=np.intp)
+        sums = distance[np.arange(len(before)), orders].sum(axis=1)
+        return np.asarray(orders[sums.argmin()])
     # A slow import, and rarely needed.
     from scipy.optimize import linear_sum_assignment
 
