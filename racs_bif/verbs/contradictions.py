@@ -121,7 +121,8 @@ def contradicted(
 ) -> Flags:
     """Return at which points (npoints,) the exact equations have another number, or none known.
 
-    The points beside special points that are `gone` are among them: what they told is not known.
+    The points beside special points that are `gone` are among them, as what these told is not
+    known, and those next to folds where the number is another between.
     """
     places = _as_places(system, problem, found.points)
     wrong = np.array(
@@ -131,6 +132,8 @@ def contradicted(
         ],
         dtype=bool,
     )
+    for j, place in _beside_folds(system, problem, found):
+        wrong[j] |= _exact_count(system, problem, place) != found.points[j].unstable
     ordinary = np.array([not point.label for point in found.points])
     for point in gone:
         before, after = ordinary[: point.index], ordinary[point.index :]
@@ -159,14 +162,21 @@ def _places(
     points = found.points
     for k in _doubtful(system, problem, found):
         yield next(_as_places(system, problem, [points[k]])), points[k].unstable
-    special = {point.index for point in found.special}
+    for j, place in _beside_folds(system, problem, found):
+        yield place, points[j].unstable
+
+
+def _beside_folds(
+    system: System, problem: EquilibriumProblem, found: Trace
+) -> Iterator[tuple[int, Place]]:
+    """Yield the neighbours of folds and branch points, and places between, near these."""
+    points, special = found.points, {point.index for point in found.special}
     for k in (point.index for point in found.special if point.label in _STATIC):
         for j in (k - 1, k + 1):
             if 0 <= k < len(points) and 0 <= j < len(points) and j not in special:
                 start, end = _as_places(system, problem, (points[k], points[j]))
                 with suppress(ConvergenceError):
-                    beyond = beside(system.exact, problem.path, start, end)
-                    yield beyond, points[j].unstable
+                    yield j, beside(system.exact, problem.path, start, end)
 
 
 def _doubtful(system: System, problem: EquilibriumProblem, found: Trace) -> list[int]:

@@ -89,6 +89,17 @@ def test_where_no_band_settles_it_refused_hopf_points_are_left_out():
     assert all("no stability" in text or "-1 reported" in text for text in findings)
 
 
+def test_where_no_band_settles_it_stability_is_not_told_beside_a_fold():
+    """Two roots of this vehicle cross between a fold and the point before it, slower than 1e-8."""
+    branch = rb.continue_equilibria(_vehicle(1838), "u", (15.5, 16.3))
+    fold = branch["LP1"].index
+    assert branch.early
+    assert -1 in branch.unstable[[fold - 1, fold + 1]]
+    findings = [check.finding for check in rb.certify(branch, "complete").failures]
+    assert findings
+    assert all("no stability" in text or "-1 reported" in text for text in findings)
+
+
 def _vehicle(index):
     path = Path(__file__).parents[2] / "benchmarks" / "random_vehicles.py"
     variant, values = runpy.run_path(str(path))["draw"](index)
