@@ -89,6 +89,18 @@ def test_where_no_band_settles_it_refused_hopf_points_are_left_out():
     assert all("no stability" in text or "-1 reported" in text for text in findings)
 
 
+def test_roots_that_cross_twice_between_special_points_are_seen():
+    """Two roots of this vehicle, slower than any band, are unstable in a short piece of it."""
+    branch = rb.continue_equilibria(_vehicle(1046), "u", (3.0, 5.0))
+    unknown = branch.parameter[branch.unstable == -1]
+    assert len(unknown)
+    assert ((unknown > 3.98) & (unknown < 4.3)).all()  # above the Hopf point at 3.983
+    assert branch.early
+    findings = [check.finding for check in rb.certify(branch, "complete").failures]
+    assert findings
+    assert all("no stability" in text or "-1 reported" in text for text in findings)
+
+
 def test_where_no_band_settles_it_stability_is_not_told_beside_a_fold():
     """Two roots of this vehicle cross between a fold and the point before it, slower than 1e-8."""
     branch = rb.continue_equilibria(_vehicle(1838), "u", (15.5, 16.3))
