@@ -71,12 +71,12 @@ class Counter:
 
     def __call__(self, X: Array, P: Array) -> tuple[Counts, Array]:
         """Return counts and static margins (N,) at equilibria X (size, N), parameters P (np, N)."""
-        core = self.sheet.core(X, P)
-        static = _static_margin(self.sheet.static(core, P))
+        core, laws = self.sheet.core(X, P), self.sheet.laws(P)
+        static = _static_margin(self.sheet.static(core, laws))
         if self.sheet.size > LARGEST:
             counts = self._one_by_one(X, P)
         else:
-            counts = count_right(expand(core, self.sheet.laws(P)))
+            counts = count_right(expand(core, laws))
         self.evaluations += int(counts.evaluations.sum())
         return counts, static
 

@@ -110,7 +110,7 @@ class Members:
         varying = compiled.kernel("jacobian_varying").bind(padded) if len(rows) else None
         fixed = np.zeros((P.shape[1], self.size, self.size))
         fixed[:, *self._fixed] = compiled.kernel("jacobian_fixed").bind(padded)().T
-        gains = self._gains(P)
+        gains = _gains(self.laws(P))
 
         def at(X: Array) -> tuple[Array, Array]:
             value, jacobian = core(X), fixed.copy()
@@ -122,13 +122,9 @@ class Members:
 
         return at
 
-    def static(self, core: Array, P: Array) -> Array:
-        """Return the Jacobian (N, size, size) of `equations` from that of the core."""
-        return self._at_rest(core.copy(), self._gains(P))
-
-    def _gains(self, P: Array) -> list[tuple[Array, Array]]:
-        """Return N(0) and D(0) of each law."""
-        return [(_static(*law.numerator), _static(*law.denominator)) for law in self.laws(P)]
+    def static(self, core: Array, laws: tuple[Laws, ...]) -> Array:
+        """Return the Jacobian (N, size, size) of `equations` from that of the core and the laws."""
+        return self._at_rest(core.copy(), _gains(laws))
 
     def _at_rest(self, core: Array, gains: list[tuple[Array, Array]]) -> Array:
         for row, (n, d) in enumerate(gains, start=self.ny):
@@ -181,6 +177,11 @@ class Members:
             step = np.linalg.solve(jacobian, value.T[:, :, None])[:, :, 0].T
         step[:, bad] = np.nan
         return np.asarray(step)
+
+
+def _gains(laws: tuple[Laws, ...]) -> list[tuple[Array, Array]]:
+    """Return N(0) and D(0) of each law."""
+    return [(_static(*law.numerator), _static(*law.denominator)) for law in laws]
 
 
 def _static(coefficients: Array, exponents: Array) -> Array:

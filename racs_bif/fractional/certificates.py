@@ -184,6 +184,11 @@ def beside(model: ExactModel, path: ParameterPath, start: Place, end: Place) -> 
     raise ConvergenceError(msg)
 
 
+def at_fold(folds: Iterable[float], *values: float) -> bool:
+    """Say whether values of the parameter are those of one of some folds, but for rounding."""
+    return any(max(abs(value - fold) for value in values) <= ROUNDING * abs(fold) for fold in folds)
+
+
 def _size(one: Array, other: Array) -> float:
     return max(float(np.abs(one).max()), float(np.abs(other).max()), _TINY)
 

@@ -11,6 +11,7 @@ from racs_bif.fractional.certificates import (
     CROSSINGS,
     ROUNDING,
     Place,
+    at_fold,
     beside,
     changes,
     exact_count,
@@ -18,7 +19,7 @@ from racs_bif.fractional.certificates import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from racs_bif.fractional.certificates import Resolved
     from racs_bif.results.branch import Branch
@@ -121,7 +122,7 @@ def _unexplained(
     branch = subject.branch
     folds = [float(branch.parameter[p.index]) for p in there if p.label != "H"]
     told_apart = [
-        v for v in verdicts if not (v.shifted and _rounded(float(branch.parameter[v.k]), folds))
+        v for v in verdicts if not (v.shifted and at_fold(folds, float(branch.parameter[v.k])))
     ]
     for a, b in pairwise(told_apart):
         if a.count is None or b.count is None:
@@ -138,10 +139,6 @@ def _unexplained(
         told = f"as {names} does not explain" if points else "where no special point is reported"
         finding = f"{where}: {counts}, {told}"
         yield subject.check(branch.name, "complete", interval, finding)
-
-
-def _rounded(value: float, folds: Iterable[float]) -> bool:
-    return any(abs(value - fold) <= ROUNDING * abs(fold) for fold in folds)
 
 
 def _sides(

@@ -13,7 +13,7 @@ from racs_bif.charts.along import count_along
 from racs_bif.charts.counting import UNKNOWN
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.argument import count_unstable
-from racs_bif.fractional.certificates import ROUNDING, Place, Resolved, beside, near, resolve
+from racs_bif.fractional.certificates import Place, Resolved, at_fold, beside, near, resolve
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -47,15 +47,16 @@ def contradiction(system: System, problem: EquilibriumProblem, found: Trace) -> 
     found : Trace
         The branch.
     """
+    folds = [float(point.z[-1]) for point in found.special if point.label in _STATIC]
     for place, unstable in _places(system, problem, found):
-        if _at_fold(found, place.value):
+        if at_fold(folds, place.value):
             continue
         exact = _exact_count(system, problem, place)
         if exact is None or exact == unstable or _shifted(system, problem, found, place):
             continue
         told = f"at {problem.parameter} = {place.value:.6g} there are {exact} exact"
         return f"{told} unstable roots, not {unstable}"
-    if not all(_at_fold(found, *interval) for interval in found.unexplained):
+    if not all(at_fold(folds, *interval) for interval in found.unexplained):
         return "the changes of stability are not all explained"
     return ""
 
@@ -95,12 +96,6 @@ def without(found: Trace, points: Sequence[SpecialPoint]) -> Trace:
     kept = [replace(p, label="") if k in gone else p for k, p in enumerate(found.points)]
     special = [point for point in found.special if point.index not in gone]
     return replace(found, points=kept, special=special)
-
-
-def _at_fold(found: Trace, *values: float) -> bool:
-    """Say whether values of the parameter are a fold's but for rounding."""
-    folds = [float(point.z[-1]) for point in found.special if point.label in _STATIC]
-    return any(max(abs(value - fold) for value in values) <= ROUNDING * abs(fold) for fold in folds)
 
 
 def _shifted(system: System, problem: EquilibriumProblem, found: Trace, place: Place) -> bool:
