@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array
 
 _TOLERANCE = 1e-12
+_STALLED = 1e-9  # corrections that 40 iterations leave below this are rounding over a small slope
 
 
 @dataclass(frozen=True)
@@ -140,6 +141,9 @@ class ExactModel:
                 break
             X, value, moved = self._damped((X, p), step, solve)
             if moved <= _TOLERANCE * (1.0 + np.abs(X).max()):
+                return X
+        else:  # beside a fold: the state is known to the last correction, no better
+            if moved <= _STALLED * (1.0 + np.abs(X).max()):
                 return X
         msg = "no equilibrium found near the model's guess; give a better guess or another value"
         raise ConvergenceError(msg)

@@ -285,3 +285,12 @@ def test_the_static_field_where_no_gain_moves(system_of, differences):
     assert field.f_pp(x, p, dp, dn).tolist() == field.f_pp(x, p, dn, dp).tolist() == [0.0, 0.3]
     slope = differences(lambda t: field.f(x, p + t * dp), 0.0, 1e-3)
     np.testing.assert_allclose(field.f_p(x, p, dp), slope, atol=1e-10)
+
+
+def test_beside_a_fold_what_is_zero_but_for_rounding_is_an_equilibrium(system_of):
+    """Newton's corrections need not fall below 1e-11 there: rounding over the small slope."""
+    system = system_of({"x": "exp(x) - q*x"}, parameters={"q": 3.0})
+    for beside in np.geomspace(1e-12, 1e-9, 60):
+        q = np.array([np.e + beside])
+        X = system.exact.equilibrium(np.array([1.0 + 1e-5]), q)
+        assert X[0] == pytest.approx(1.0 + np.sqrt(2.0 * beside / np.e), abs=1e-8)
