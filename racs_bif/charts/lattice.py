@@ -27,6 +27,8 @@ _SHORT_OF = 0.97
 _ASIDE = (0.0137, 0.0419, 0.1093)
 _UNEQUAL = np.array([1.0, 0.6])
 """Shares of a move aside: along a diagonal it would not leave a boundary that runs along it."""
+_REACH = 4.0
+"""Moves aside, in their lengths, that may lead past a boundary to where an equilibrium was lost."""
 _TRIALS = (0.5, 0.0, 1.0, 0.25, 0.75)
 
 
@@ -112,6 +114,7 @@ class Lattice:
         self.nodes: dict[Key, Node] = {}
         self.beside: list[Node] = []
         self._scale: Array | None = None
+        self._short: dict[Key, float] = {}
 
     def place(self, key: Key) -> Array:
         """Return the place (2,) of a node, present or not, in the unit square."""
@@ -225,11 +228,16 @@ class Lattice:
         return found
 
     def _spread(self, pending: list[Key], spacing: int, aside: float) -> list[Key]:
-        """Continue equilibria from node to node; return the nodes that are not reached."""
+        """Continue equilibria from node to node; return the nodes that are not reached.
+
+        Aside only those are tried that were lost so near that a small move may help.
+        """
         tried: set[tuple[Key, Key]] = set()
+        far = _REACH * aside / self.side
+        near = {key for key in pending if aside == 0.0 or self._short.get(key, 0.0) <= far}
         while pending:
             jobs = []
-            for key in pending:
+            for key in (key for key in pending if key in near):
                 around = ((key[0] + spacing * i, key[1] + spacing * j) for i, j in _AROUND)
                 source = next((k for k in around if self.known(k) and (key, k) not in tried), None)
                 if source is not None:
@@ -241,6 +249,9 @@ class Lattice:
             end = self._aside(np.array([self.place(key) for key, _ in jobs]).T, aside)
             X = np.array([self.nodes[source].X for _, source in jobs]).T
             X, reached = self.sheet.follow(X, start, end)
+            short = (1.0 - reached) * np.hypot(*(end - start))
+            for (key, _), left in zip(jobs, short.tolist(), strict=True):
+                self._short[key] = min(self._short.get(key, np.inf), left)
             good = np.flatnonzero(reached == 1.0)
             if len(good):
                 self._record([jobs[k][0] for k in good], X[:, good], end[:, good])

@@ -147,16 +147,19 @@ class Members:
         with np.errstate(all="ignore"):
             held, equations = moving, self.equations(P)
             for _ in range(_ITERATIONS):
-                if len(moving) < len(held):
+                if 2 * len(moving) < len(held):
                     held, equations = moving, self.equations(P[:, moving])
-                value, jacobian = equations(X[:, moving])
-                parity[moving] = np.linalg.slogdet(jacobian)[0]
+                value, jacobian = equations(X[:, held])
+                if len(moving) < len(held):
+                    at = np.searchsorted(held, moving)
+                    value, jacobian = value[:, at], jacobian[at]
                 step = self._step(value, jacobian)
                 X[:, moving] -= step
                 scale = 1.0 + np.abs(X[:, moving]).max(axis=0)
                 size = np.abs(step).max(axis=0) / scale
                 good = size <= _TOLERANCE
                 found[moving[good]] = True
+                parity[moving[good]] = np.linalg.slogdet(jacobian[good])[0]
                 contracts = (size <= _CONTRACTION * last[moving]) | (size <= _SMALL)
                 last[moving] = size
                 moving = moving[~good & contracts & np.isfinite(size)]
