@@ -148,6 +148,18 @@ class ExactModel:
         msg = "no equilibrium found near the model's guess; give a better guess or another value"
         raise ConvergenceError(msg)
 
+    def nearest(self, X: Array, p: Array) -> Array:
+        """Return where the equilibrium equations are nearest to zero, downhill from X.
+
+        By the method of Levenberg and Marquardt (MINPACK), which is not led astray where tyres, or
+        whatever else saturates, leave Newton's method nearly no slope.
+        """
+        from scipy.optimize import root
+
+        with np.errstate(all="ignore"):
+            found = root(self.residual, X, args=(p,), jac=self.jacobian, method="lm").x
+        return np.asarray(found) if np.all(np.isfinite(found)) else X
+
     def _damped(
         self,
         point: tuple[Array, Array],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -180,7 +181,14 @@ class System:
             told = f"the equations are not finite at the guess {names}"
             msg = f"model '{self.name}': {told}; give another guess"
             raise ModelError(msg)
-        return self.polish(X, p)
+        try:
+            return self.polish(X, p)
+        except ConvergenceError:
+            if self._degenerate(X, p):
+                raise
+            with suppress(ConvergenceError):
+                return self.polish(self.exact.nearest(X, p), p)
+            raise
 
     def polish(self, X: Array, p: Array) -> Array:
         """Return states (n,) of the exact equilibrium near X = (y, w)."""

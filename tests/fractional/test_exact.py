@@ -5,6 +5,7 @@ import cmath
 import numpy as np
 import pytest
 
+import racs_bif as rb
 from racs_bif.errors import ConvergenceError, ModelError
 from racs_bif.fractional.static import StaticField
 
@@ -215,6 +216,23 @@ def test_damping_reaches_far_equilibria(system_of):
     """Plain Newton from 3 diverges on atan(x)."""
     system = system_of({"x": "-atan(x - 1)"}, guess={"x": 4.0})
     assert system.equilibrium()[0] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_where_newton_is_led_away_the_equations_are_minimised():
+    """A lorry whose tyres saturate on Newton's way: its lateral velocity would go to infinity."""
+    values = {
+        **{"u": 3.0, "delta_f": -0.0744, "m": 4419.0, "I_z": 8358.0, "a": 1.85, "b": 1.08},
+        **{"m_c": 268.6, "I_cs": 139.9, "e": 0.3775, "c": 0.4046, "d": 0.5493, "C_s": 20830.0},
+        **{"B_f": 14.69, "C_f": 1.655, "D_f": -21340.0, "E_f": -0.5191},
+        **{"B_r": 8.785, "C_r": 1.245, "D_r": -16260.0, "E_r": -0.06965},
+    }
+    system = rb.load_model("racs", parameters=values, variant="restoring")
+    with pytest.raises(ConvergenceError, match="no equilibrium found"):
+        system.exact.equilibrium(np.zeros(5), system.values)
+    x = system.equilibrium()
+    X = system.exact_point(x, system.values)
+    assert np.abs(system.exact.residual(X, system.values)).max() < 1e-11
+    assert np.abs(X[:4]).max() < 2.0
 
 
 def test_a_singular_jacobian_at_the_guess(system_of):
