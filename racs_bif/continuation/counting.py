@@ -53,11 +53,15 @@ def unexplained(problem: Problem, a: Point, b: Point, crossings: Iterable[int]) 
     return ""
 
 
-def hides_others(problem: Problem, a: Point, b: Point, events: Sequence[tuple[Point, int]]) -> bool:
+def hides_others(
+    problem: Problem, a: Point, b: Point, events: Sequence[tuple[Point, int, bool]]
+) -> bool:
     """Say whether the spectra at events show that there are more of them between two points.
 
-    Between events, and at the ends, there are as many unstable eigenvalues as at the event beside,
-    the ones on the axis left out or all of them counted.
+    On one side of an event there are as many unstable eigenvalues as at it without those on the
+    axis, on the other side as many as with all of them. Sums do not tell: where a fold makes one
+    unstable and a Hopf point two, one in the end may be two and one less, or all three and a
+    second Hopf point that was not found.
 
     Parameters
     ----------
@@ -65,20 +69,21 @@ def hides_others(problem: Problem, a: Point, b: Point, events: Sequence[tuple[Po
         Knows the sides.
     a, b : Point
         Two points, one after another.
-    events : sequence of (Point, int)
-        What was found between them, in order, and how many eigenvalues change side there.
+    events : sequence of (Point, int, bool)
+        What was found between them, in order, how many eigenvalues change side there, and whether
+        they may only touch the axis.
     """
     possible = {a.unstable}
-    for point, count in events:
+    for point, count, touches in events:
         if not count:
             continue
         rest = problem.unstable_beside(point.spectrum, count)
         if rest is None:
             return False
-        around = {rest, rest + count}
-        if not possible & around:
+        before = possible & {rest, rest + count}
+        if not before:
             return True
-        possible = around
+        possible = {2 * rest + count - one for one in before} | (before if touches else set())
     return b.unstable not in possible
 
 

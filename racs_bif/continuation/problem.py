@@ -164,10 +164,13 @@ class Detector(ABC):
         Its letters.
     crossings : int
         How many eigenvalues change side at it: 1 at LP and BP, 2 at H; 0 where it explains none.
+    touches : bool
+        Whether they may only touch the axis, which its data do not tell.
     """
 
     label: str
     crossings: int = 0
+    touches: bool = False
 
     # Each detector has its own kind of problem: hence Any.
     @abstractmethod

@@ -11,7 +11,7 @@ from racs_bif.orbits.floquet import Floquet, floquet
 from racs_bif.orbits.folded import Folds
 from racs_bif.orbits.intervals import GROWTH, Linearised
 from racs_bif.orbits.piecewise import Piecewise, equidistant
-from racs_bif.orbits.problem import OrbitProblem
+from racs_bif.orbits.problem import FEWEST_TOLD, TOLD_PER_UNKNOWN, OrbitProblem
 
 if TYPE_CHECKING:
     from racs_bif.orbits.equations import Active, Collocated, Equations
@@ -58,10 +58,9 @@ class CollocatedProblem(OrbitProblem):
         """Return the orbit as a function of time."""
         return self.at(z).curve
 
-    def unknown_times(self, z: Array) -> int:
-        """Return the number of nodes in time."""
-        N, m, _ = self.nodes(z).shape
-        return int(N * m)
+    def telling(self, z: Array) -> Array:
+        """Return times in the mesh's own intervals, several for each node."""
+        return self.reference(z).mesh.dense(TOLD_PER_UNKNOWN * self.nodes(z).shape[1], FEWEST_TOLD)
 
     def at(self, z: Array) -> Collocated:
         """Return the equations at `z`, kept until they are asked for elsewhere."""

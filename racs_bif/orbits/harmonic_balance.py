@@ -21,7 +21,7 @@ from racs_bif.orbits.fourier import (
     turned,
 )
 from racs_bif.orbits.phase_reference import PhaseReference
-from racs_bif.orbits.problem import OrbitProblem
+from racs_bif.orbits.problem import FEWEST_TOLD, TOLD_PER_UNKNOWN, OrbitProblem
 from racs_bif.orbits.realised_orbit import multipliers_along, realised_states
 
 if TYPE_CHECKING:
@@ -118,9 +118,10 @@ class HarmonicBalanceProblem(OrbitProblem):
         """Return the number of harmonics."""
         return harmonics_of(self.series(z))
 
-    def unknown_times(self, z: Array) -> int:
-        """Return how many coefficients a state has."""
-        return 2 * self.harmonics(z) + 1
+    def telling(self, z: Array) -> Array:
+        """Return equal steps, several for each coefficient of a state."""
+        steps = max(FEWEST_TOLD, TOLD_PER_UNKNOWN * (2 * self.harmonics(z) + 1))
+        return np.linspace(0.0, 1.0, steps + 1)
 
     def tail(self, z: Array) -> float:
         """Return the largest of the last harmonics, relative to the orbit: its error."""

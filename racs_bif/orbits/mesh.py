@@ -75,6 +75,11 @@ class Mesh:
         """Return the times (N, k) at the given fractions (k,) of every step."""
         return self.nodes[:-1, None] + self.widths[:, None] * fractions
 
+    def dense(self, each: int, fewest: int) -> Array:
+        """Return times from 0 to 1, so many in each step, or more that there are the fewest."""
+        each = max(each, -(-fewest // self.steps))
+        return np.append(self.times(np.arange(each) / each), 1.0)
+
 
 def rounded(steps: int, segments: int) -> int:
     """Return the number of steps rounded up to a multiple of the segments."""

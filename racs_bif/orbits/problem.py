@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from racs_bif.symbolic.field import Array, VectorField
     from racs_bif.symbolic.paths import ParameterPath
 
+FEWEST_TOLD: Final = 200
+"""Fewest steps in time that an orbit is kept by."""
+TOLD_PER_UNKNOWN: Final = 3
+"""Times at which an orbit is kept, for each at which a method knows it."""
 _SEED: Final = 20240
 _SAMPLES: Final = 800
 _ROUNDED: Final = 1e-10
@@ -131,16 +135,15 @@ class OrbitProblem(Problem):
         solution = np.linalg.solve(matrix, right)
         return float(sign * np.linalg.norm(right) / np.linalg.norm(solution))
 
-    def unknown_times(self, z: Array) -> int:
-        """Return at how many times over a period the method knows the orbit; 0 where at all."""
-        del z
-        return 0
+    @abstractmethod
+    def telling(self, z: Array) -> Array:
+        """Return fractions of the period, from 0 to 1, dense enough to keep the orbit by them."""
 
-    def orbit(self, z: Array, samples: int = 201) -> Orbit:
-        """Return the orbit as a result, sampled at equal times over one period."""
+    def orbit(self, z: Array) -> Orbit:
+        """Return the orbit as a result, sampled where it is told by."""
         found = self.floquet(z)
         highest, lowest = self.extrema(z)
-        fractions = np.linspace(0.0, 1.0, samples)
+        fractions = self.telling(z)
         return Orbit(
             states=self.field.states,
             parameter=self.parameter,

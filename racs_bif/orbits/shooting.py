@@ -17,7 +17,8 @@ from racs_bif.orbits.floquet import Floquet, floquet
 from racs_bif.orbits.flow import Derivative, Flow, Integrator
 from racs_bif.orbits.generations import Generations
 from racs_bif.orbits.polishing import direction, polished
-from racs_bif.orbits.problem import OrbitProblem
+from racs_bif.orbits.problem import FEWEST_TOLD, OrbitProblem
+from racs_bif.orbits.radau import ABSCISSAE
 from racs_bif.orbits.reference import Reference
 from racs_bif.orbits.remesh import better_mesh, interpolated
 from racs_bif.orbits.settings import OrbitSettings
@@ -346,6 +347,10 @@ class ShootingProblem(OrbitProblem):
     def extrema(self, z: Array) -> tuple[Array, Array]:
         """Return the highest and the lowest values (n,) of the states."""
         return self.flow(z).profile.extrema()
+
+    def telling(self, z: Array) -> Array:
+        """Return times in the mesh's own steps, one for each stage."""
+        return self.reference(z).mesh.dense(len(ABSCISSAE), FEWEST_TOLD)
 
     def sample(self, z: Array, fractions: Array) -> Array:
         """Return the states (n, m) at fractions (m,) of the period."""

@@ -29,8 +29,6 @@ _SAMPLED = 40
 """Most orbits that are kept along a branch, those at special points not counted."""
 _FINE, _TIMES = 1000, 200
 """Steps in time that an orbit is computed at, and those that are kept."""
-_PER_UNKNOWN = 3
-"""At special points those that are kept, more than a method's unknowns where these are many."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,8 +100,7 @@ def orbit_branch(followed: Followed, end: End) -> Branch:
     profiles = {}
     last = _end(found)
     for raw in [*found.special, *last]:
-        finest = _PER_UNKNOWN * followed.problem.unknown_times(raw.z)
-        orbit = followed.problem.orbit(raw.z, max(_TIMES, finest) + 1)
+        orbit = followed.problem.orbit(raw.z)
         point = _special(followed, raw, orbit, end.data if raw in last else {})
         special.append(point)
         p = followed.problem.path.vector(orbit.value)

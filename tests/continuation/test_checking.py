@@ -77,7 +77,11 @@ class Spectra:
         ((0, 2), [([0.0, -1.0], 1), ([-1.0, 0.0], 1)], True),
         ((0, 3), [([1e-9, -1e-9, -1.0], 2), ([1.0, 1.0, 0.0], 1)], False),
         ((0, 1), [([5.0, 5.0], 0), ([0.0, -1.0], 1)], False),  # it explains nothing
-        ((1, 1), [([0.0, 1.0], 1)], False),  # touched only
+        ((1, 1), [([0.0, 1.0], 1)], True),  # it would have touched only
+        ((0, 1), [([0.0, -1.0], 1), ([1.0, 1e-9, -1e-9], 2)], True),  # and a second pair, back
+        ((0, 3), [([0.0, -1.0], 1), ([1.0, 1e-9, -1e-9], 2)], False),
+        ((2, 3), [([0.0, 1.0, 1.0], 1), ([1.0, 1e-9, -1e-9], 2)], True),
+        ((2, 1), [([0.0, 1.0, 1.0], 1), ([1.0, 1e-9, -1e-9], 2)], False),
         ((3, 3), [], False),
         ((0, 2), [([0.0, 1.0], 1)], True),
         ((0, 3), [([0.0, 1.0], 1)], True),
@@ -85,11 +89,21 @@ class Spectra:
 )
 def test_spectra_at_events_show_what_else_is_there(ends, events, hides):
     a, b = (SimpleNamespace(unstable=count) for count in ends)
-    found = [(SimpleNamespace(spectrum=np.array(spectrum)), n) for spectrum, n in events]
+    found = [(SimpleNamespace(spectrum=np.array(spectrum)), n, False) for spectrum, n in events]
+    assert hides_others(Spectra(), a, b, found) is hides
+
+
+@pytest.mark.parametrize(
+    ("end", "touches", "hides"),
+    [(1, True, False), (2, True, False), (0, True, True), (1, False, True)],
+)
+def test_some_events_may_touch_the_axis_only(end, touches, hides):
+    a, b = SimpleNamespace(unstable=1), SimpleNamespace(unstable=end)
+    found = [(SimpleNamespace(spectrum=np.array([0.0, 1.0])), 1, touches)]
     assert hides_others(Spectra(), a, b, found) is hides
 
 
 def test_nothing_is_hidden_where_the_spectra_are_not_known():
     a, b = SimpleNamespace(unstable=0), SimpleNamespace(unstable=5)
     problem = SimpleNamespace(unstable_beside=lambda _spectrum, _count: None)
-    assert not hides_others(problem, a, b, [(SimpleNamespace(spectrum=np.zeros(2)), 1)])
+    assert not hides_others(problem, a, b, [(SimpleNamespace(spectrum=np.zeros(2)), 1, False)])
