@@ -62,6 +62,8 @@ ON_AXIS: Final = 1e-6
 """By how much, relative, an exact root may differ from i omega of a Hopf curve."""
 AT_REST: Final = 1e-9
 """By how much an equilibrium may miss the exact equations, relative to the terms."""
+NAUGHT: Final = 1e-12
+"""What a state at rest, as the rate of an angle, may be beside the others."""
 PLACES: Final = 4
 """Places of a chart at which roots are counted again."""
 _UNEXPECTED: Final = "UNEXPECTED"
@@ -214,7 +216,8 @@ def _curve(system: System, hopf: SpecialPoint) -> tuple[Branch, str, str]:
         where = ", ".join(f"{name} = {value:.6g}" for name, value in place.items())
         X = _at_rest(at, curve.states[k, : len(system.states)])
         left = np.abs(at.exact.residual(X, at.values))
-        if np.any(left > AT_REST * (np.abs(at.exact.jacobian(X, at.values)) @ np.abs(X))):
+        sizes = np.maximum(np.abs(X), NAUGHT * np.abs(X).max())
+        if np.any(left > AT_REST * (np.abs(at.exact.jacobian(X, at.values)) @ sizes)):
             return curve, _UNEXPECTED, f"no exact equilibrium at {where}"
         ch = Characteristic.of_model(at.exact, X, at.values)
         root = np.exp(polish(ch, np.log(np.array([1j * omega])))[0])[0]
