@@ -255,7 +255,8 @@ def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, s
         if 2.0 * np.pi / (profile.times[-1] - profile.times[0]) < slowest:
             continue
         at = system.with_parameters(orbits[name].parameters)
-        residual = exact_residual(at, profile)
+        # and, by the last harmonics, how well the series are known
+        residual = exact_residual(at, profile, float(orbits[name].data.get("tail", 0.0)))
         if residual is None:
             left_out.append(name)
         elif residual > ALLOWED[method]:
@@ -265,13 +266,14 @@ def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, s
     return orbits, "early" if orbits.early or left_out else "ok", orbits.stopped + told
 
 
-def exact_residual(system: System, profile: Profile) -> float | None:
+def exact_residual(system: System, profile: Profile, error: float = 0.0) -> float | None:
     """Return by how much an orbit misses the exact equations, over its greatest rates.
 
     None where so many equal steps as are taken at most do not resolve it.
 
     A rate that is a far smaller difference of terms, as accelerations of slow orbits are of forces,
-    is known by the samples to a share of these terms only.
+    is known by the samples to a share of these terms only; and to the orbit's own error, relative,
+    of them.
 
     Samples of one period are Fourier transformed; element k answers ``exp(i omega t)`` by its law
     at ``i omega``. Nothing of the library's orbit methods is used.
@@ -300,7 +302,8 @@ def exact_residual(system: System, profile: Profile) -> float | None:
     spread = np.ptp(np.hstack([y, w]), axis=0)
     terms = (np.abs(jacobian) @ spread)[: y.shape[1]]
     sizes = np.maximum(np.abs(slopes).max(axis=0), DIFFERENCE * terms)
-    return float((np.abs(miss).max(axis=0) / sizes).max())
+    beyond = np.maximum(np.abs(miss).max(axis=0) - error * terms, 0.0)
+    return float((beyond / sizes).max())
 
 
 def _samples(times: np.ndarray, states: np.ndarray) -> np.ndarray | None:

@@ -38,8 +38,8 @@ def unexplained(problem: Problem, a: Point, b: Point, crossings: Iterable[int]) 
     str
         Empty if all is explained.
     """
-    if len(a.spectrum) == 0 or len(b.spectrum) == 0:
-        return ""
+    if a.stable is None or b.stable is None:
+        return ""  # there is no spectrum, or it is too poor to count by
     counts = [count for count in crossings if count]
     change = b.unstable - a.unstable
     sums = {0}
@@ -73,6 +73,8 @@ def hides_others(
         What was found between them, in order, how many eigenvalues change side there, and whether
         they may only touch the axis.
     """
+    if a.stable is None or b.stable is None:
+        return False
     possible = {a.unstable}
     for point, count, touches in events:
         if not count:

@@ -156,7 +156,7 @@ class Locator:
 
     def _note(self, place: int, point: Point, what: str) -> None:
         label, parameter = self._builder.detectors[place].label, self._builder.problem.parameter
-        self._notes.append(f"{label} {what} {parameter} = {point.parameter:.10g}")
+        self._notes.append(f"{label} {what} {parameter} = {point.parameter:.10g}.")
 
     def dip(self, segment: Segment, place: int, guess: float) -> float | None:
         """Return a place where a test function that has one sign at both ends has the other.

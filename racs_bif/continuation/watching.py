@@ -325,8 +325,8 @@ class Watch:
         if reason and not at_start:
             self.unexplained.append((a.parameter, b.parameter))
             self._notes.append(
-                f"unexplained between {self._problem.parameter} = {a.parameter:.10g} and "
-                f"{b.parameter:.10g}: {reason}"
+                f"The spectrum's change between {self._problem.parameter} = {a.parameter:.10g} and "
+                f"{b.parameter:.10g} is unexplained: {reason}."
             )
         return nodes
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from racs_bif.continuation.checking import CONTRACTION, judge
-from racs_bif.continuation.counting import hides_others
+from racs_bif.continuation.counting import hides_others, unexplained
 from racs_bif.continuation.scaling import Scaling
 
 FLAT = np.array([0.0, 1.0])
@@ -88,7 +88,7 @@ class Spectra:
     ],
 )
 def test_spectra_at_events_show_what_else_is_there(ends, events, hides):
-    a, b = (SimpleNamespace(unstable=count) for count in ends)
+    a, b = (SimpleNamespace(unstable=count, stable=False) for count in ends)
     found = [(SimpleNamespace(spectrum=np.array(spectrum)), n, False) for spectrum, n in events]
     assert hides_others(Spectra(), a, b, found) is hides
 
@@ -98,12 +98,22 @@ def test_spectra_at_events_show_what_else_is_there(ends, events, hides):
     [(1, True, False), (2, True, False), (0, True, True), (1, False, True)],
 )
 def test_some_events_may_touch_the_axis_only(end, touches, hides):
-    a, b = SimpleNamespace(unstable=1), SimpleNamespace(unstable=end)
+    a, b = (SimpleNamespace(unstable=count, stable=False) for count in (1, end))
     found = [(SimpleNamespace(spectrum=np.array([0.0, 1.0])), 1, touches)]
     assert hides_others(Spectra(), a, b, found) is hides
 
 
 def test_nothing_is_hidden_where_the_spectra_are_not_known():
-    a, b = SimpleNamespace(unstable=0), SimpleNamespace(unstable=5)
+    a, b = (SimpleNamespace(unstable=count, stable=False) for count in (0, 5))
     problem = SimpleNamespace(unstable_beside=lambda _spectrum, _count: None)
     assert not hides_others(problem, a, b, [(SimpleNamespace(spectrum=np.zeros(2)), 1, False)])
+
+
+def test_spectra_that_are_too_poor_to_tell_stability_are_not_counted_by():
+    problem = Spectra()
+    a, b = (SimpleNamespace(unstable=k, stable=None, spectrum=np.ones(3)) for k in (0, 2))
+    assert unexplained(problem, a, b, []) == ""
+    assert not hides_others(problem, a, b, [])
+    a.stable = b.stable = False
+    assert "from 0 to 2" in unexplained(problem, a, b, [])
+    assert hides_others(problem, a, b, [])
