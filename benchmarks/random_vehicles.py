@@ -256,7 +256,8 @@ def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, s
             continue
         at = system.with_parameters(orbits[name].parameters)
         # and, by the last harmonics, how well the series are known
-        residual = exact_residual(at, profile, float(orbits[name].data.get("tail", 0.0)))
+        tail = orbits[name].data.get("tail")
+        residual = exact_residual(at, profile, tail if isinstance(tail, float) else 0.0)
         if residual is None:
             left_out.append(name)
         elif residual > ALLOWED[method]:
