@@ -117,3 +117,14 @@ def test_a_run_goes_on_where_it_was_cut_off(bench, tmp_path):
         "| chart | early | 2 | at u = #/e | 0 |",
         "| continue | ok | 2 |  | 0 |",
     ]
+
+
+def test_a_tongue_beside_another_boundary_is_found_on_the_cells_of_the_default(bench):
+    """Half a metre per second wide, in a plane of 37: few cells miss it, and a count tells."""
+    variant, values = bench.draw(4492)
+    system = rb.load_model("racs", parameters=values, variant=variant)
+    chart, outcome, told = bench._chart(system, 4492)
+    assert (outcome, len(chart.boundaries)) == ("early", 1)
+    assert told.endswith(
+        "the chart says 1 unstable roots, counted are {3}; not on the default's cells"
+    )

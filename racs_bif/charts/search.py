@@ -27,6 +27,9 @@ _FELT = {"margin": ("hopf",), "static": ("static", "fold")}
 _HIDES = 0.75
 """A root's distance to the axis that falls by this share from node to node may vanish between."""
 
+_BESIDE = 4
+"""Cells that a boundary passes are divided into so many each way: another may pass beside it."""
+
 Cell = tuple[int, int, int]
 """Lower corner and side."""
 EdgeKey = tuple[Key, Key]
@@ -42,6 +45,8 @@ class Search:
         Nodes with their equilibria and counts.
     cells : list of (int, int, int)
         Leaves of the quadtree.
+    spacing : int
+        Side of its first cells.
     boundaries : list of Boundary
         What was traced.
     unexplained : list of (Key, Key) or int
@@ -58,6 +63,7 @@ class Search:
 
     lattice: Lattice
     cells: list[Cell]
+    spacing: int
     boundaries: list[Boundary] = field(default_factory=list)
     unexplained: list[EdgeKey | int] = field(default_factory=list)
     chain: list[Edge] = field(default_factory=list)
@@ -119,7 +125,7 @@ def search(
     tell("searching")
     lattice.begin(spacing)
     steps = range(0, lattice.side, spacing)
-    found = Search(lattice, [(i, j, spacing) for i in steps for j in steps])
+    found = Search(lattice, [(i, j, spacing) for i in steps for j in steps], spacing)
     edges: dict[EdgeKey, Edge] = {}
     while True:
         _trace_all(found, edges, follow)
@@ -252,6 +258,8 @@ def _hides(found: Search, cell: Cell) -> bool:
     if any(piece in sides for piece in found.unexplained):
         return True
     counts = {nodes[key].count for key in corners} - {NOTHING}
+    if len(counts) > 1 and h * _BESIDE > found.spacing:
+        return True
     if len(counts) != 1 or min(counts) < 0:
         return False
     known = [key for key in corners if lattice.known(key)]

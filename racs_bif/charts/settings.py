@@ -19,7 +19,8 @@ class ChartSettings:
         The search starts on 2**coarse by 2**coarse cells.
     depth : int
         Cells that may hide a boundary are divided down to 2**depth by 2**depth. An island that is
-        smaller than these, and steep, may be missed.
+        smaller than these, and steep, may be missed; and one narrower than a quarter of the first
+        cells beside another boundary.
     step : float
         Largest step along a boundary, of a span.
     angle : float
