@@ -234,8 +234,8 @@ class Chart:
             found = self.smallest_island
             size = "" if found is None else f"; the smallest found is {found:.2g} of a span across"
             told.append(
-                f"An island smaller than {cell} may be missed where nothing points to it, and close "
-                f"to another boundary a larger one{size}. A greater depth, and more cells to begin "
+                f"An island smaller than {cell} may be missed where nothing points to it, and near "
+                f"another boundary a larger one{size}. A greater depth, and more cells to begin "
                 "with, search more finely."
             )
         return tuple(told)

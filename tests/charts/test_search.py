@@ -25,7 +25,7 @@ def held(found):
     return {part.count: round(part.face.area, 6) for part in parts}
 
 
-@pytest.mark.parametrize(("radius", "nodes"), [(0.3, 700), (0.03, 400), (0.01, 700)])
+@pytest.mark.parametrize(("radius", "nodes"), [(0.3, 800), (0.03, 400), (0.01, 700)])
 def test_islands_are_found_and_closed(searched, radius, nodes):
     found = searched("island", ("a", "b"), UNIT, r=radius)
     (boundary,) = found.boundaries
