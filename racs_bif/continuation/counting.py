@@ -53,15 +53,13 @@ def unexplained(problem: Problem, a: Point, b: Point, crossings: Iterable[int]) 
     return ""
 
 
-def hides_others(
-    problem: Problem, a: Point, b: Point, events: Sequence[tuple[Point, int, bool]]
-) -> bool:
+def hides_others(problem: Problem, a: Point, b: Point, events: Sequence[tuple[Point, int]]) -> bool:
     """Say whether the spectra at events show that there are more of them between two points.
 
     On one side of an event there are as many unstable eigenvalues as at it without those on the
     axis, on the other side as many as with all of them. Sums do not tell: where a fold makes one
     unstable and a Hopf point two, one in the end may be two and one less, or all three and a
-    second Hopf point that was not found.
+    second Hopf point that was not found. Where the spectrum is rough either side may be the one.
 
     Parameters
     ----------
@@ -69,23 +67,23 @@ def hides_others(
         Knows the sides.
     a, b : Point
         Two points, one after another.
-    events : sequence of (Point, int, bool)
-        What was found between them, in order, how many eigenvalues change side there, and whether
-        they may only touch the axis.
+    events : sequence of (Point, int)
+        What was found between them, in order, and how many eigenvalues change side there.
     """
     if a.stable is None or b.stable is None:
         return False
     possible = {a.unstable}
-    for point, count, touches in events:
+    for point, count in events:
         if not count:
             continue
         rest = problem.unstable_beside(point.spectrum, count)
         if rest is None:
             return False
-        before = possible & {rest, rest + count}
+        sides = {rest, rest + count}
+        before = possible & sides
         if not before:
             return True
-        possible = {2 * rest + count - one for one in before} | (before if touches else set())
+        possible = sides if problem.rough else {2 * rest + count - one for one in before}
     return b.unstable not in possible
 
 

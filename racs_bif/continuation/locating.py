@@ -39,7 +39,6 @@ class Event:
     point: Point
     special: SpecialPoint
     crossings: int
-    touches: bool
 
 
 class Locator:
@@ -152,7 +151,7 @@ class Locator:
         except FAILURES as error:
             self._note(place, point, f"could not be polished ({error}) at")
         self._builder.values(point)
-        return Event(0.0, point, special, detector.explains(special.data), detector.touches)
+        return Event(0.0, point, special, detector.explains(special.data))
 
     def _note(self, place: int, point: Point, what: str) -> None:
         label, parameter = self._builder.detectors[place].label, self._builder.problem.parameter

@@ -46,11 +46,15 @@ class Problem(ABC):
     chord : bool
         Whether Newton's method keeps a matrix while it contracts well: where `bordered` costs far
         more than `residual` and what it returns.
+    rough : bool
+        Whether eigenvalues that others are near are known so poorly, as multipliers of orbits are,
+        that at a special point they may be found on the wrong side.
     """
 
     name: str
     parameter: str
     chord: bool = False
+    rough: bool = False
 
     @abstractmethod
     def residual(self, z: Array) -> Array:
@@ -164,13 +168,10 @@ class Detector(ABC):
         Its letters.
     crossings : int
         How many eigenvalues change side at it: 1 at LP and BP, 2 at H; 0 where it explains none.
-    touches : bool
-        Whether they may only touch the axis, which its data do not tell.
     """
 
     label: str
     crossings: int = 0
-    touches: bool = False
 
     # Each detector has its own kind of problem: hence Any.
     @abstractmethod

@@ -312,7 +312,7 @@ class Watch:
         if unchecked or (at_start and self._critical_start()):
             return nodes
         reason = unexplained(self._problem, a, b, [event.crossings for event in events])
-        found = [(event.point, event.crossings, event.touches) for event in events]
+        found = [(event.point, event.crossings) for event in events]
         if not (reason or hides_others(self._problem, a, b, found)):
             return nodes
         middle = self._middle(segment or self._locator.segment(a, b))

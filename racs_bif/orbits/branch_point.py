@@ -21,7 +21,6 @@ class BranchPointOfCycles(Detector):
 
     label = "BPC"
     crossings = 1
-    touches = True
 
     def value(self, problem: OrbitProblem, point: Point) -> float:
         """Return `OrbitProblem.singularity`; not defined where the branch begins."""

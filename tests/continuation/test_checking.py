@@ -60,6 +60,8 @@ def test_a_good_step_says_how_long_the_next_may_be(step, factor):
 class Spectra:
     """Eigenvalues are real; `hides_others` asks for nothing else."""
 
+    rough = False
+
     def unstable_beside(self, spectrum, count):
         order = np.argsort(np.abs(spectrum))
         return int(np.count_nonzero(spectrum[order[count:]] > 0.0))
@@ -89,24 +91,25 @@ class Spectra:
 )
 def test_spectra_at_events_show_what_else_is_there(ends, events, hides):
     a, b = (SimpleNamespace(unstable=count, stable=False) for count in ends)
-    found = [(SimpleNamespace(spectrum=np.array(spectrum)), n, False) for spectrum, n in events]
+    found = [(SimpleNamespace(spectrum=np.array(spectrum)), n) for spectrum, n in events]
     assert hides_others(Spectra(), a, b, found) is hides
 
 
 @pytest.mark.parametrize(
-    ("end", "touches", "hides"),
+    ("end", "rough", "hides"),
     [(1, True, False), (2, True, False), (0, True, True), (1, False, True)],
 )
-def test_some_events_may_touch_the_axis_only(end, touches, hides):
+def test_where_spectra_are_rough_an_event_may_have_touched_the_axis(end, rough, hides):
+    problem, found = Spectra(), [(SimpleNamespace(spectrum=np.array([0.0, 1.0])), 1)]
+    problem.rough = rough
     a, b = (SimpleNamespace(unstable=count, stable=False) for count in (1, end))
-    found = [(SimpleNamespace(spectrum=np.array([0.0, 1.0])), 1, touches)]
-    assert hides_others(Spectra(), a, b, found) is hides
+    assert hides_others(problem, a, b, found) is hides
 
 
 def test_nothing_is_hidden_where_the_spectra_are_not_known():
     a, b = (SimpleNamespace(unstable=count, stable=False) for count in (0, 5))
     problem = SimpleNamespace(unstable_beside=lambda _spectrum, _count: None)
-    assert not hides_others(problem, a, b, [(SimpleNamespace(spectrum=np.zeros(2)), 1, False)])
+    assert not hides_others(problem, a, b, [(SimpleNamespace(spectrum=np.zeros(2)), 1)])
 
 
 def test_spectra_that_are_too_poor_to_tell_stability_are_not_counted_by():
