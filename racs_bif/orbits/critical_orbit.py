@@ -115,7 +115,8 @@ class GaussOrbits:
         period: float,
         parameter: float,
     ) -> None:
-        settings = CollocationSettings(intervals=guess.mesh.steps, degree=DEGREE)
+        steps = guess.mesh.steps
+        settings = CollocationSettings(intervals=steps, degree=DEGREE, most_intervals=steps)
         reference = reference_of(guess, typical_scales(guess))
         self.problem = CollocationProblem(field, path, reference, guess, settings)
         self.guess = self.problem.join(guess.nodes, period, parameter)

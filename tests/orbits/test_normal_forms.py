@@ -19,7 +19,10 @@ from racs_bif.orbits import (
     doubled,
     from_samples,
 )
+from racs_bif.orbits.critical_orbit import DEGREE, GaussOrbits
+from racs_bif.orbits.mesh import Mesh
 from racs_bif.orbits.normal_forms import cycle_normal_form
+from racs_bif.orbits.piecewise import Piecewise, equidistant
 from racs_bif.orbits.polishing import polished
 from racs_bif.shelf.load import system_of
 
@@ -375,3 +378,15 @@ def test_a_third_derivative_that_is_not_finite_is_a_reason(found, monkeypatch):
     monkeypatch.setattr(Variational, "third", broken)
     form = found(moebius(), PD, "PD")
     assert set(form) == {"normal_form"}
+
+
+def test_meshes_may_be_finer_than_a_branch_would_have_them():
+    """Normal forms halve the intervals of an orbit that may have as many as are allowed."""
+    r = "(x**2 + y**2)"
+    equations = {"x": f"mu*x - y - x*{r}", "y": f"x + mu*y - y*{r}"}
+    system = system_of(rb.model_from_strings("circle", equations, parameters={"mu": 1.0}))
+    mesh = Mesh.uniform(404, 1)
+    angles = 2.0 * np.pi * equidistant(mesh, DEGREE)
+    circle = Piecewise(mesh, np.stack([np.cos(angles), np.sin(angles)], axis=-1))
+    orbits = GaussOrbits(system.field, system.path("mu"), circle, 2.0 * np.pi, 1.0)
+    assert np.abs(orbits.problem.residual(orbits.guess)).max() < 1e-8
