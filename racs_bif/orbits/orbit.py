@@ -31,7 +31,7 @@ class Orbit:
     period : float
         The period, in units of time.
     times : array (m,)
-        Equal times from 0 to the period.
+        From 0 to the period, where the method knows the orbit: dense where its mesh is.
     profile : array (n, m)
         The states there.
     maxima, minima : array (n,)
