@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 _SAME_STATE = 0.02
 _BEYOND = 1e-6
+_AT_ONCE = 200_000
+"""Pairs of a line and a stretch of a boundary that are looked at together: some megabytes."""
 
 
 def alike(a: Array, b: Array, scale: Array) -> bool:
@@ -27,28 +29,47 @@ def between(rows: Array, at: float) -> Array:
     return np.asarray((1.0 - (at - k)) * rows[k] + (at - k) * rows[k + 1])
 
 
-def intersections(start: Array, end: Array, boundary: Boundary) -> list[tuple[float, float]]:
-    """Return how far along a straight line a boundary crosses it, and where that is on it.
+def intersections(start: Array, end: Array, boundary: Boundary) -> tuple[np.ndarray, Array, Array]:
+    """Return where a boundary crosses straight lines.
 
-    The latter is counted in the boundary's points.
+    Parameters
+    ----------
+    start, end : array (2, N)
+        Ends of the lines, in the unit square.
+    boundary : Boundary
+        What may cross them.
+
+    Returns
+    -------
+    (array (k,), array (k,), array (k,))
+        Which line is crossed, in order, how far along it, and where on the boundary, counted in
+        its points.
     """
-    line = boundary.line
-    if len(line) < 2:
-        return []
-    line, shift = _beyond_box(line, closed=boundary.closed)
-    q, s = line[:-1], np.diff(line, axis=0)
-    r = end - start
-    across = r[0] * s[:, 1] - r[1] * s[:, 0]
-    off = q - start
+    if len(boundary.line) < 2:
+        return np.zeros(0, dtype=int), np.zeros(0), np.zeros(0)
+    line, shift = _beyond_box(boundary.line, closed=boundary.closed)
+    at_once = max(_AT_ONCE // len(line), 1)
+    parts = []
+    for first in range(0, start.shape[1], at_once):
+        chosen = slice(first, first + at_once)
+        which, k, share, along = _hits(start[:, chosen], end[:, chosen], line)
+        parts.append((which + first, share, (k - shift + along) / BETWEEN))
+    which, share, at = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return which, share, np.clip(at, 0.0, len(boundary.values) - 1.0)
+
+
+def _hits(start: Array, end: Array, line: Array) -> tuple[np.ndarray, np.ndarray, Array, Array]:
+    """Return which lines are crossed by which stretches, and how far along both that is."""
+    q, s = line[:-1].T, np.diff(line, axis=0).T
+    r = (end - start)[:, :, None]
+    off = q[:, None] - start[:, :, None]
+    across = r[0] * s[1] - r[1] * s[0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = (off[:, 0] * s[:, 1] - off[:, 1] * s[:, 0]) / across
-        along = (off[:, 0] * r[1] - off[:, 1] * r[0]) / across
+        share = (off[0] * s[1] - off[1] * s[0]) / across
+        along = (off[0] * r[1] - off[1] * r[0]) / across
     hit = (share >= 0.0) & (share <= 1.0) & (along >= 0.0) & (along < 1.0)
-    found = []
-    for k in np.flatnonzero(hit):
-        at = (int(k) - shift + float(along[k])) / BETWEEN
-        found.append((float(share[k]), min(max(at, 0.0), len(boundary.values) - 1.0)))
-    return found
+    which, k = np.nonzero(hit)
+    return which, k, share[hit], along[hit]
 
 
 def _beyond_box(line: Array, *, closed: bool) -> tuple[Array, int]:

@@ -9,49 +9,22 @@ import numpy as np
 
 from racs_bif.charts.boundary import Seed
 from racs_bif.charts.crossing import alike, between, intersections
+from racs_bif.charts.edge_path import EdgePath
 from racs_bif.charts.lattice import NOTHING, UNCOUNTED, Lattice, Node
 from racs_bif.errors import ConvergenceError
 from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.numerics.bracketing import root
-from racs_bif.symbolic.paths import ParameterPath
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike
-
     from racs_bif.charts.boundary import Boundary
-    from racs_bif.charts.plane import Plane
     from racs_bif.symbolic.field import Array
 
 _HALVINGS = 12
 _BESIDE = 1e-4
 _BEYOND = 1e-6
-
-
-class EdgePath(ParameterPath):
-    """The straight line between two places of a plane, its parameter from 0 to 1."""
-
-    def __init__(self, plane: Plane, start: Array, end: Array) -> None:
-        self.names = ("the place between two nodes",)
-        self._path = plane.path
-        self._start, self._end = plane.values(start), plane.values(end)
-
-    def _at(self, active: ArrayLike) -> Array:
-        share = float(np.atleast_1d(np.asarray(active, dtype=float))[0])
-        return np.asarray((1.0 - share) * self._start + share * self._end)
-
-    def vector(self, active: ArrayLike) -> Array:
-        """Return the base parameters (np,)."""
-        return self._path.vector(self._at(active))
-
-    def direction(self, active: ArrayLike, index: int = 0) -> Array:
-        """Return their derivative (np,)."""
-        del index
-        at, moved = self._at(active), self._end - self._start
-        parts = [moved[k] * self._path.direction(at, k) for k in range(2) if moved[k]]
-        return np.asarray(sum(parts))
 
 
 @dataclass(frozen=True)
@@ -102,7 +75,7 @@ class Edge:
         self.a, self.b = start, end
         self.start, self.end = start.place, end.place
         self.path = EdgePath(lattice.plane, self.start, self.end)
-        self._crossings: list[list[Crossing]] = []
+        self.crossed: list[list[Crossing]] = []
 
     def beyond(self) -> tuple[Edge, Edge]:
         """Return straight lines from both ends through the other one to the box."""
@@ -146,32 +119,21 @@ class Edge:
 
     def crossings(self, boundaries: list[Boundary]) -> list[Crossing]:
         """Return where boundaries cross, in order; those of other equilibria are left out."""
-        for k in range(len(self._crossings), len(boundaries)):
-            boundary = boundaries[k]
-            found = []
-            for share, place in intersections(self.start, self.end, boundary):
-                if boundary.kind == "fold":
-                    found.append(Crossing(share, k, 0))
-                elif self._ours(share, boundary, place):
-                    found.append(Crossing(share, k, self._jump(share, boundary, place)))
-            self._crossings.append(found)
-        everything = [crossing for found in self._crossings for crossing in found]
+        cross([self], boundaries)
+        everything = [crossing for found in self.crossed for crossing in found]
         return sorted(everything, key=lambda crossing: crossing.share)
 
-    def _ours(self, share: float, boundary: Boundary, place: float) -> bool:
-        """Say whether a boundary belongs to the equilibrium that the edge's ends have."""
-        before = max(share - self._beside, 0.0) if boundary.kind == "static" else share
-        return self._same_sheet(before, between(boundary.states, place))
-
     @property
-    def _beside(self) -> float:
+    def beside(self) -> float:
+        """How far beside a boundary, in shares of the edge, its equilibria are told apart."""
         return _BESIDE / float(np.hypot(*(self.end - self.start)))
 
-    def _jump(self, share: float, boundary: Boundary, place: float) -> int:
+    def jump(self, share: float, boundary: Boundary, place: float) -> int:
+        """Return how the count changes where a boundary crosses: at a share, a place on it."""
         gradient = between(boundary.gradient, place)
         if np.all(np.isfinite(gradient)):
             return 2 if float(gradient @ (self.end - self.start)) > 0.0 else -2
-        both = np.clip(np.array([share - self._beside, share + self._beside]), 0.0, 1.0)
+        both = np.clip(np.array([share - self.beside, share + self.beside]), 0.0, 1.0)
         unstable = self.count(both)[0]
         return int(unstable[1] - unstable[0]) if unstable.min() >= 0 else 0
 
@@ -303,12 +265,48 @@ class Edge:
         for boundary in boundaries:
             if boundary.kind != seed.kind:
                 continue
-            for share, place in intersections(self.start, self.end, boundary):
+            ends = self.start[:, None], self.end[:, None]
+            _, shares, places = intersections(*ends, boundary)
+            for share, place in zip(shares.tolist(), places.tolist(), strict=True):
                 near = np.hypot(*(self._place(share) - seed.place)) < 10.0 * _BESIDE
                 omega = between(boundary.omega, place)
                 if near and (seed.kind != "hopf" or abs(omega - seed.omega) < 0.02 * omega):
                     return True
         return False
+
+
+def cross(edges: Sequence[Edge], boundaries: list[Boundary]) -> None:
+    """Find where boundaries cross edges that do not know it yet, all edges at once."""
+    for k, boundary in enumerate(boundaries):
+        new = [edge for edge in edges if len(edge.crossed) == k]
+        if new:
+            for edge in new:
+                edge.crossed.append([])
+            fold = boundary.kind == "fold"
+            asked = [edge for edge in new if edge.counted or (fold and edge.ends)]
+            if asked:
+                _crossed(asked, boundary, k)
+
+
+def _crossed(edges: Sequence[Edge], boundary: Boundary, number: int) -> None:
+    start, end = (np.array([getattr(edge, at) for edge in edges]).T for at in ("start", "end"))
+    which, shares, places = intersections(start, end, boundary)
+    found = list(zip(which.tolist(), shares.tolist(), places.tolist(), strict=True))
+    if boundary.kind == "fold" or not found:
+        for e, share, _ in found:
+            edges[e].crossed[-1].append(Crossing(share, number, 0))
+        return
+    before = np.array([edges[e].beside if boundary.kind == "static" else 0.0 for e, _, _ in found])
+    at = np.maximum(shares - before, 0.0)
+    X = np.array([edges[e].a.X for e in which]).T
+    begin = start[:, which]
+    lattice = edges[0].lattice
+    own, reached = lattice.sheet.follow(X, begin, begin + at * (end[:, which] - begin))
+    for j, (e, share, place) in enumerate(found):
+        # others belong to another equilibrium than the edge's ends have
+        if reached[j] == 1.0 and alike(own[:, j], between(boundary.states, place), lattice.scale):
+            jump = edges[e].jump(share, boundary, place)
+            edges[e].crossed[-1].append(Crossing(share, number, jump))
 
 
 def torn(edges: Sequence[Edge]) -> list[bool]:

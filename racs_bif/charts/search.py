@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.charts.boundary import Boundary, Seed, trace_boundary
-from racs_bif.charts.edges import Edge, torn
+from racs_bif.charts.edges import Edge, cross, torn
 from racs_bif.charts.lattice import NOTHING, Key, Lattice
 from racs_bif.errors import ConvergenceError
 
@@ -49,6 +49,8 @@ class Search:
         Side of its first cells.
     boundaries : list of Boundary
         What was traced.
+    edges : dict of (Key, Key) to Edge
+        Sides of the cells, in their smallest pieces.
     unexplained : list of (Key, Key) or int
         Edges whose ends differ for no boundary that was found, by their nodes or place in `chain`.
     chain : list of Edge
@@ -65,6 +67,7 @@ class Search:
     cells: list[Cell]
     spacing: int
     boundaries: list[Boundary] = field(default_factory=list)
+    edges: dict[EdgeKey, Edge] = field(default_factory=dict)
     unexplained: list[EdgeKey | int] = field(default_factory=list)
     chain: list[Edge] = field(default_factory=list)
     different: dict[EdgeKey, bool] = field(default_factory=dict)
@@ -126,10 +129,11 @@ def search(
     lattice.begin(spacing)
     steps = range(0, lattice.side, spacing)
     found = Search(lattice, [(i, j, spacing) for i in steps for j in steps], spacing)
-    edges: dict[EdgeKey, Edge] = {}
     while True:
-        _trace_all(found, edges, follow)
-        _trace_folds(found, edges, follow)
+        found.edges = _sides(found)
+        _cross(found)
+        _trace_all(found, follow)
+        _trace_folds(found, follow)
         unsure = [cell for cell in found.cells if cell[2] > 1 and _hides(found, cell)]
         if not unsure:
             break
@@ -138,20 +142,16 @@ def search(
     return found
 
 
-def _trace_all(
-    found: Search,
-    edges: dict[EdgeKey, Edge],
-    follow: Callable[[Seed], Boundary],
-) -> None:
+def _trace_all(found: Search, follow: Callable[[Seed], Boundary]) -> None:
     """Trace boundaries until they explain every edge, or no more can be found.
 
     Counts of different equilibria may differ: edges between such are `_trace_folds`'s.
     """
-    apart = set[EdgeKey | int](_tear(found, edges))
+    apart = set[EdgeKey | int](_tear(found))
     hopeless = set(apart)
     while True:
         new = False
-        for key, edge in _all_edges(found, edges):
+        for key, edge in _all_edges(found):
             if key in hopeless or edge.explained(found.boundaries):
                 continue
             seed = edge.seed(found.boundaries)
@@ -172,19 +172,15 @@ def _trace_all(
             break
     found.unexplained = [
         key
-        for key, edge in _all_edges(found, edges)
+        for key, edge in _all_edges(found)
         if key not in apart and not edge.explained(found.boundaries)
     ]
 
 
-def _trace_folds(
-    found: Search,
-    edges: dict[EdgeKey, Edge],
-    follow: Callable[[Seed], Boundary],
-) -> None:
+def _trace_folds(found: Search, follow: Callable[[Seed], Boundary]) -> None:
     """Trace folds behind which the equilibria of neighbouring nodes are not the same."""
-    for key in _tear(found, edges):
-        for line in edges[key].beyond():
+    for key in _tear(found):
+        for line in found.edges[key].beyond():
             if line.explained(found.boundaries):
                 continue
             seed = line.seed(found.boundaries)
@@ -196,18 +192,17 @@ def _trace_folds(
                 found.troubles.append(f"a fold boundary could not be traced: {error}")
 
 
-def _tear(found: Search, edges: dict[EdgeKey, Edge]) -> list[EdgeKey]:
+def _tear(found: Search) -> list[EdgeKey]:
     """Return the edges whose ends have different equilibria."""
-    keys = [key for key, _ in _all_edges(found, edges) if isinstance(key, tuple)]
-    new = [key for key in keys if key not in found.different]
-    found.different |= dict(zip(new, torn([edges[key] for key in new]), strict=True))
-    apart = [key for key in keys if found.different[key]]
+    new = [key for key in found.edges if key not in found.different]
+    found.different |= dict(zip(new, torn([found.edges[key] for key in new]), strict=True))
+    apart = [key for key in found.edges if found.different[key]]
     found.torn = len(apart)
     return apart
 
 
 def _keep(found: Search, boundary: Boundary) -> None:
-    """Take in a boundary; along a fold look for others that end there."""
+    """Take in a boundary: what it crosses; along a fold look for others that end there."""
     found.boundaries.append(boundary)
     if boundary.kind == "fold":
         nodes = found.lattice.along(found.lattice.plane.places(boundary.values.T).T)
@@ -216,25 +211,30 @@ def _keep(found: Search, boundary: Boundary) -> None:
             for a, b in pairwise(nodes)
             if float(np.hypot(*(a.place - b.place))) < _LINK
         ]
+    _cross(found)
 
 
-def _all_edges(found: Search, edges: dict[EdgeKey, Edge]) -> Iterator[tuple[EdgeKey | int, Edge]]:
-    """Yield every edge with its name."""
-    for key in _edges(found):
-        if key not in edges:
-            edges[key] = Edge(found.lattice, *(found.lattice.nodes[k] for k in key))
-        yield key, edges[key]
-    yield from enumerate(list(found.chain))
+def _cross(found: Search) -> None:
+    cross([edge for _, edge in _all_edges(found)], found.boundaries)
 
 
-def _edges(found: Search) -> list[EdgeKey]:
+def _all_edges(found: Search) -> list[tuple[EdgeKey | int, Edge]]:
+    """Return every edge with its name."""
+    return [*found.edges.items(), *enumerate(found.chain)]
+
+
+def _sides(found: Search) -> dict[EdgeKey, Edge]:
     """Return the sides of all cells, in their smallest pieces."""
     pieces: set[EdgeKey] = set()
     for i, j, h in found.cells:
         corners = ((i, j), (i + h, j), (i + h, j + h), (i, j + h))
         for a, b in zip(corners, (*corners[1:], corners[0]), strict=True):
             pieces.update(_pieces(found.lattice, min(a, b), max(a, b)))
-    return sorted(pieces)
+    known, nodes = found.edges, found.lattice.nodes
+    return {
+        key: known.get(key) or Edge(found.lattice, nodes[key[0]], nodes[key[1]])
+        for key in sorted(pieces)
+    }
 
 
 def _pieces(lattice: Lattice, a: Key, b: Key) -> Iterator[EdgeKey]:
