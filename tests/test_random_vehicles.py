@@ -1,4 +1,4 @@
-"""A handful of random vehicles; ``RACS_BIF_VEHICLES=50`` examines fifty.
+"""Fifty random vehicles, the same in every run; ``RACS_BIF_VEHICLES=500`` examines five hundred.
 
 `benchmarks/random_vehicles.py` says what is done with each, and does ten thousand.
 """
@@ -10,6 +10,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
 
 import racs_bif as rb
 from racs_bif.errors import UsageError
@@ -17,8 +19,10 @@ from racs_bif.results.branch import Profile
 from racs_bif.shelf.load import system_of
 
 PATH = Path(__file__).parents[1] / "benchmarks" / "random_vehicles.py"
-COUNT = int(os.environ.get("RACS_BIF_VEHICLES", "0"))
-VEHICLES = range(COUNT) if COUNT else (3,)
+PARTS = 10
+EACH = int(os.environ.get("RACS_BIF_VEHICLES", "50")) // PARTS
+PHASES = (Phase.explicit, Phase.generate)
+"""What went wrong is said of the vehicle that was drawn: to look for a smaller one takes minutes."""
 
 
 @pytest.fixture(scope="module")
@@ -26,14 +30,44 @@ def bench():
     return SimpleNamespace(**runpy.run_path(str(PATH)))
 
 
-@pytest.mark.parametrize("index", VEHICLES)
-def test_nothing_unexpected_happens(bench, index):
-    row = bench.examine(index, seconds=600.0)
-    assert {"continue", "certify", "chart"} <= set(row["parts"]) or (
-        row["parts"]["continue"][0] != "ok"
-    )
-    wrong = {k: told for k, (outcome, told) in row["parts"].items() if outcome == "UNEXPECTED"}
-    assert not wrong, (bench.draw(index), row.get("tracebacks"))
+class Drawn:
+    """Draws numbers from Hypothesis, which likes the ends of spans and round values."""
+
+    def __init__(self, draw):
+        self.draw = draw
+
+    def choice(self, names, likely):
+        assert len(likely) == len(names)
+        return self.draw(st.sampled_from(names))
+
+    def between(self, low, high):
+        return self.draw(st.floats(low, high))
+
+
+def unexpected(row):
+    return {k: told for k, (outcome, told) in row["parts"].items() if outcome == "UNEXPECTED"}
+
+
+@pytest.mark.parametrize("part", range(PARTS))
+def test_nothing_unexpected_happens(bench, part):
+    vehicles = st.composite(lambda draw: bench.vehicle(Drawn(draw)))()
+
+    @seed(part)
+    @settings(max_examples=EACH, phases=PHASES, suppress_health_check=list(HealthCheck))
+    @given(vehicles)
+    def examine(vehicle):
+        row = bench.done_with(*vehicle, places=part, seconds=600.0)
+        assert {"certify", "chart"} <= set(row["parts"])
+        assert not unexpected(row), row.get("tracebacks")
+
+    examine()
+
+
+@pytest.mark.parametrize(("index", "method"), [(128, "collocation"), (5072, "harmonic-balance")])
+def test_orbits_of_vehicles_satisfy_their_equations(bench, index, method):
+    row = bench.examine(index, share=16, seconds=600.0)
+    assert row["parts"][f"orbits by {method}"][0] == "ok"
+    assert not unexpected(row), row.get("tracebacks")
 
 
 def test_a_vehicle_is_the_same_in_every_run(bench):

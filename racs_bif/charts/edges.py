@@ -56,6 +56,11 @@ class _Bracket:
     X: tuple[Array, Array]
     omega: tuple[float, float]
 
+    @property
+    def odd(self) -> bool:
+        """Whether a real root crosses zero there."""
+        return (self.wrong[1] - self.wrong[0]) % 2 == 1
+
 
 class Edge:
     """A straight line between two nodes.
@@ -166,6 +171,8 @@ class Edge:
             found = self._solve(bracket)
             if found is not None and not self._there(found, boundaries):
                 return found
+            if found is None and bracket.odd:
+                return None  # the equilibrium is lost where a real root would cross zero
             middle = 0.5 * (bracket.low + bracket.high)
             if any(abs(c.share - middle) < 1e-3 * (bracket.high - bracket.low) for c in crossed):
                 middle += 0.11 * (bracket.high - bracket.low)
@@ -193,8 +200,7 @@ class Edge:
         return None
 
     def _solve(self, bracket: _Bracket) -> Seed | None:
-        odd = (bracket.wrong[1] - bracket.wrong[0]) % 2
-        return self._static(bracket) if odd else self._hopf(bracket)
+        return self._static(bracket) if bracket.odd else self._hopf(bracket)
 
     def _hopf(self, bracket: _Bracket) -> Seed | None:
         exact = self.lattice.plane.system.exact

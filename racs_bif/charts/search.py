@@ -51,6 +51,8 @@ class Search:
         What was traced.
     edges : dict of (Key, Key) to Edge
         Sides of the cells, in their smallest pieces.
+    hopeless : dict of (Key, Key) or int to int
+        Edges that lead to no boundary, and how many boundaries were known then.
     unexplained : list of (Key, Key) or int
         Edges whose ends differ for no boundary that was found, by their nodes or place in `chain`.
     chain : list of Edge
@@ -68,6 +70,7 @@ class Search:
     spacing: int
     boundaries: list[Boundary] = field(default_factory=list)
     edges: dict[EdgeKey, Edge] = field(default_factory=dict)
+    hopeless: dict[EdgeKey | int, int] = field(default_factory=dict)
     unexplained: list[EdgeKey | int] = field(default_factory=list)
     chain: list[Edge] = field(default_factory=list)
     different: dict[EdgeKey, bool] = field(default_factory=dict)
@@ -148,26 +151,16 @@ def _trace_all(found: Search, follow: Callable[[Seed], Boundary]) -> None:
     Counts of different equilibria may differ: edges between such are `_trace_folds`'s.
     """
     apart = set[EdgeKey | int](_tear(found))
-    hopeless = set(apart)
+    hopeless = apart | {key for key, n in found.hopeless.items() if n == len(found.boundaries)}
     while True:
         new = False
         for key, edge in _all_edges(found):
             if key in hopeless or edge.explained(found.boundaries):
                 continue
-            seed = edge.seed(found.boundaries)
-            if seed is None:
-                hopeless.add(key)
-                continue
-            try:
-                boundary = follow(seed)
-            except (ConvergenceError, np.linalg.LinAlgError) as error:
-                found.troubles.append(f"a {seed.kind} boundary could not be traced: {error}")
-                hopeless.add(key)
-                continue
-            _keep(found, boundary)
+            new |= _lead(found, edge, follow)
             if not edge.explained(found.boundaries):
                 hopeless.add(key)
-            new = True
+                found.hopeless[key] = len(found.boundaries)
         if not new:
             break
     found.unexplained = [
@@ -177,19 +170,25 @@ def _trace_all(found: Search, follow: Callable[[Seed], Boundary]) -> None:
     ]
 
 
+def _lead(found: Search, edge: Edge, follow: Callable[[Seed], Boundary]) -> bool:
+    """Trace the boundary that an edge leads to, and say whether there is one."""
+    seed = edge.seed(found.boundaries)
+    if seed is None:
+        return False
+    try:
+        _keep(found, follow(seed))
+    except (ConvergenceError, np.linalg.LinAlgError) as error:
+        found.troubles.append(f"a {seed.kind} boundary could not be traced: {error}")
+        return False
+    return True
+
+
 def _trace_folds(found: Search, follow: Callable[[Seed], Boundary]) -> None:
     """Trace folds behind which the equilibria of neighbouring nodes are not the same."""
     for key in _tear(found):
         for line in found.edges[key].beyond():
-            if line.explained(found.boundaries):
-                continue
-            seed = line.seed(found.boundaries)
-            if seed is None:
-                continue
-            try:
-                _keep(found, follow(seed))
-            except (ConvergenceError, np.linalg.LinAlgError) as error:
-                found.troubles.append(f"a fold boundary could not be traced: {error}")
+            if not line.explained(found.boundaries):
+                _lead(found, line, follow)
 
 
 def _tear(found: Search) -> list[EdgeKey]:
