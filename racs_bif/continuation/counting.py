@@ -13,8 +13,11 @@ if TYPE_CHECKING:
 
     from racs_bif.continuation.points import Point
     from racs_bif.continuation.problem import Problem
+    from racs_bif.numerics.eigen import Spectrum
 
 _CHEAP = 200
+_CLEAR = 4.0
+"""An eigenvalue is followed that moves by less than this part of the distance to others."""
 
 
 def unexplained(problem: Problem, a: Point, b: Point, crossings: Iterable[int]) -> str:
@@ -59,7 +62,8 @@ def hides_others(problem: Problem, a: Point, b: Point, events: Sequence[tuple[Po
     On one side of an event there are as many unstable eigenvalues as at it without those on the
     axis, on the other side as many as with all of them. Sums do not tell: where a fold makes one
     unstable and a Hopf point two, one in the end may be two and one less, or all three and a
-    second Hopf point that was not found. Where the spectrum is rough either side may be the one.
+    second Hopf point that was not found. Nor do counts where another pair crosses each way; it is
+    seen from one event to the next, if it has not met others.
 
     Parameters
     ----------
@@ -73,18 +77,37 @@ def hides_others(problem: Problem, a: Point, b: Point, events: Sequence[tuple[Po
     if a.stable is None or b.stable is None:
         return False
     possible = {a.unstable}
+    before, others = a.spectrum, np.ones(len(a.spectrum), dtype=bool)
     for point, count in events:
         if not count:
             continue
-        rest = problem.unstable_beside(point.spectrum, count)
-        if rest is None:
+        critical = problem.on_axis(point.spectrum, count)
+        if critical is None:
             return False
-        sides = {rest, rest + count}
-        before = possible & sides
-        if not before:
+        rest = problem.unstable(point.spectrum[~critical])
+        possible = {2 * rest + count - one for one in possible & {rest, rest + count}}
+        if not possible or _strays(problem, before[others], point.spectrum[~critical]):
             return True
-        possible = sides if problem.rough else {2 * rest + count - one for one in before}
-    return b.unstable not in possible
+        before, others = point.spectrum, ~critical
+    return b.unstable not in possible or (
+        not others.all() and _strays(problem, before[others], b.spectrum)
+    )
+
+
+def _strays(problem: Problem, before: Spectrum, after: Spectrum) -> bool:
+    """Say whether a pair changes side that can be told from all others at both ends."""
+    pairs = before[before.imag > 0.0]
+    if not 1 < min(len(before), len(after)) <= max(len(before), len(after)) <= _CHEAP:
+        return False
+    if not len(pairs):
+        return False
+    distance = np.abs(pairs[:, None] - after[None, :])
+    nearest = distance.argmin(axis=1)
+    moved = distance.min(axis=1)
+    here = np.sort(np.abs(pairs[:, None] - before[None, :]), axis=1)[:, 1]  # the first is itself
+    there = np.sort(np.abs(after[nearest][:, None] - after[None, :]), axis=1)[:, 1]
+    clear = (after[nearest].imag > 0.0) & (_CLEAR * moved < np.minimum(here, there))
+    return bool(np.any(problem.sides(pairs)[clear] != problem.sides(after[nearest])[clear]))
 
 
 def _crossed(problem: Problem, a: Point, b: Point) -> int:

@@ -46,15 +46,11 @@ class Problem(ABC):
     chord : bool
         Whether Newton's method keeps a matrix while it contracts well: where `bordered` costs far
         more than `residual` and what it returns.
-    rough : bool
-        Whether eigenvalues that others are near are known so poorly, as multipliers of orbits are,
-        that at a special point they may be found on the wrong side.
     """
 
     name: str
     parameter: str
     chord: bool = False
-    rough: bool = False
 
     @abstractmethod
     def residual(self, z: Array) -> Array:
@@ -110,10 +106,10 @@ class Problem(ABC):
         others = (self.unstable(np.delete(spectrum, i)) for i in range(len(spectrum)))
         return np.fromiter((other < count for other in others), dtype=bool, count=len(spectrum))
 
-    def unstable_beside(self, spectrum: Spectrum, count: int) -> int | None:
-        """Return how many eigenvalues are unstable at an event besides the `count` on the axis.
+    def on_axis(self, spectrum: Spectrum, count: int) -> NDArray[np.bool_] | None:
+        """Return which eigenvalues (m,) are the `count` on the axis at an event.
 
-        By default None: that is not known.
+        By default None: that is not known, as of multipliers that are too rough beside others.
         """
         del spectrum, count
         return None

@@ -96,11 +96,13 @@ class EquilibriumProblem(Problem):
         """Return which eigenvalues are right of the imaginary axis."""
         return np.asarray(spectrum.real > 0.0)
 
-    def unstable_beside(self, spectrum: Spectrum, count: int) -> int | None:
-        """Return how many are right of the imaginary axis but for those nearest to it."""
+    def on_axis(self, spectrum: Spectrum, count: int) -> np.ndarray | None:
+        """Return which eigenvalues are the `count` nearest to the imaginary axis."""
         if len(spectrum) < count:
             return None
-        return int(np.count_nonzero(spectrum.real[np.argsort(np.abs(spectrum.real))[count:]] > 0.0))
+        mask = np.zeros(len(spectrum), dtype=bool)
+        mask[np.argsort(np.abs(spectrum.real))[:count]] = True
+        return mask
 
     def measures(self, z: Array) -> dict[str, float]:
         """Return further quantities of the point."""

@@ -56,7 +56,6 @@ class OrbitProblem(Problem):
 
     field: VectorField
     path: ParameterPath
-    rough = True
     turns: int = 1
     trivial: float = 1e-3
     crossing: Array | None = None

@@ -58,13 +58,18 @@ def test_a_good_step_says_how_long_the_next_may_be(step, factor):
 
 
 class Spectra:
-    """Eigenvalues are real; `hides_others` asks for nothing else."""
+    """As of equilibria."""
 
-    rough = False
+    def on_axis(self, spectrum, count):
+        mask = np.zeros(len(spectrum), dtype=bool)
+        mask[np.argsort(np.abs(spectrum.real))[:count]] = True
+        return mask
 
-    def unstable_beside(self, spectrum, count):
-        order = np.argsort(np.abs(spectrum))
-        return int(np.count_nonzero(spectrum[order[count:]] > 0.0))
+    def unstable(self, spectrum):
+        return int(np.count_nonzero(self.sides(spectrum)))
+
+    def sides(self, spectrum):
+        return spectrum.real > 0.0
 
 
 @pytest.mark.parametrize(
@@ -90,25 +95,37 @@ class Spectra:
     ],
 )
 def test_spectra_at_events_show_what_else_is_there(ends, events, hides):
-    a, b = (SimpleNamespace(unstable=count, stable=False) for count in ends)
+    a, b = (SimpleNamespace(unstable=count, stable=False, spectrum=np.zeros(0)) for count in ends)
     found = [(SimpleNamespace(spectrum=np.array(spectrum)), n) for spectrum, n in events]
     assert hides_others(Spectra(), a, b, found) is hides
 
 
+def pairs(*upper):
+    return np.array([s for one in upper for s in (complex(one), complex(one).conjugate())])
+
+
 @pytest.mark.parametrize(
-    ("end", "rough", "hides"),
-    [(1, True, False), (2, True, False), (0, True, True), (1, False, True)],
+    ("end", "hides"),
+    [
+        (pairs(0.1 + 0.2j, 0.1 + 9j), True),  # the second crosses, and a third one back
+        (pairs(0.1 + 0.2j, -0.1 + 9j), False),
+        (pairs(0.1 + 0.2j, 0.1 + 14j), False),  # it may be another one
+        (pairs(0.1 + 0.2j, 0.1 + 9j, -0.1 + 9.1j), False),  # it may be the other one
+        (pairs(0.1 + 0.2j), False),
+    ],
 )
-def test_where_spectra_are_rough_an_event_may_have_touched_the_axis(end, rough, hides):
-    problem, found = Spectra(), [(SimpleNamespace(spectrum=np.array([0.0, 1.0])), 1)]
-    problem.rough = rough
-    a, b = (SimpleNamespace(unstable=count, stable=False) for count in (1, end))
-    assert hides_others(problem, a, b, found) is hides
+def test_a_pair_that_crosses_beside_an_event_is_seen(end, hides):
+    a = SimpleNamespace(unstable=0, stable=True, spectrum=pairs(-0.1 + 0.2j, -0.3 + 10j))
+    b = SimpleNamespace(unstable=2, stable=False, spectrum=end)
+    event = SimpleNamespace(spectrum=pairs(1e-12 + 0.2j, -0.1 + 9.4j))
+    assert hides_others(Spectra(), a, b, [(event, 2)]) is hides
+    # and the other way
+    assert hides_others(Spectra(), b, a, [(event, 2)]) is hides
 
 
 def test_nothing_is_hidden_where_the_spectra_are_not_known():
-    a, b = (SimpleNamespace(unstable=count, stable=False) for count in (0, 5))
-    problem = SimpleNamespace(unstable_beside=lambda _spectrum, _count: None)
+    a, b = (SimpleNamespace(unstable=count, stable=False, spectrum=np.zeros(2)) for count in (0, 5))
+    problem = SimpleNamespace(on_axis=lambda _spectrum, _count: None)
     assert not hides_others(problem, a, b, [(SimpleNamespace(spectrum=np.zeros(2)), 1)])
 
 
