@@ -299,8 +299,9 @@ def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, s
             continue
         place = orbits[name].parameters
         # and, by the last harmonics, how well the series are known
-        tail = orbits[name].data.get("tail")
-        error = tail if isinstance(tail, float) else 0.0
+        data = orbits[name].data
+        tail, harmonics = (float(data.get(what, 0.0)) for what in ("tail", "harmonics"))  # type: ignore[arg-type]
+        error = tail, tail * harmonics
         at = (realised or system).with_parameters(place)
         law_error = 0.0 if realised is None else realised.realisation.error
         residuals = {"exact": exact_residual(at, profile, error, law_error)}
@@ -317,16 +318,19 @@ def _orbits(system: System, branch: Branch, method: str) -> tuple[Branch, str, s
 
 
 def exact_residual(
-    system: System, profile: Profile, error: float = 0.0, law_error: float = 0.0
+    system: System,
+    profile: Profile,
+    error: tuple[float, float] = (0.0, 0.0),
+    law_error: float = 0.0,
 ) -> float | None:
     """Return by how much an orbit misses the exact equations, over its greatest rates.
 
     None where so many equal steps as are taken at most do not resolve it.
 
     A rate that is a far smaller difference of terms, as accelerations of slow orbits are of forces,
-    is known by the samples to a share of these terms only; and to the orbit's own error, relative,
-    of them. An orbit of a realisation is that of the exact equations but for what its elements'
-    outputs are wrong by: that error of each of their harmonics.
+    is known by the samples to a share of these terms only; and to the orbit's own errors, relative,
+    of them and of its rates, over a turn. An orbit of a realisation is that of the exact equations
+    but for what its elements' outputs are wrong by: that error of each of their harmonics.
 
     Samples of one period are Fourier transformed; element k answers ``exp(i omega t)`` by its law
     at ``i omega``. Nothing of the library's orbit methods is used.
@@ -351,7 +355,7 @@ def _residual(
     system: System,
     profile: Profile,
     laws: Sequence[Callable[[Complex], Complex]],
-    error: float = 0.0,
+    error: tuple[float, float] = (0.0, 0.0),
     law_error: float = 0.0,
 ) -> float | None:
     states, times = profile.states, profile.times
@@ -375,7 +379,8 @@ def _residual(
     miss = slopes - _core(system, y, w, padded)[:, : y.shape[1]]
     jacobian = system.compiled.core_jacobian(np.append(y.mean(axis=0), w.mean(axis=0)), padded)
     spread = np.ptp(np.hstack([y, w]), axis=0)
-    terms, allowed = (np.abs(jacobian) @ np.column_stack([spread, error * spread + wrong])).T
+    terms, allowed = (np.abs(jacobian) @ np.column_stack([spread, error[0] * spread + wrong])).T
+    allowed[: y.shape[1]] += error[1] * 2.0 * np.pi / period * spread[: y.shape[1]]
     sizes = np.maximum(np.abs(slopes).max(axis=0), DIFFERENCE * terms[: y.shape[1]])
     beyond = np.maximum(np.abs(miss).max(axis=0) - allowed[: y.shape[1]], 0.0)
     return float((beyond / sizes).max())
