@@ -1,8 +1,9 @@
 """Random vehicles: what goes wrong with them that nobody explains.
 
-Run ``python benchmarks/random_vehicles.py --count 10000``. Vehicle k is the same in every run; what
+Run ``python -m benchmarks.random_vehicles --count 10000``. Vehicle k is the same in every run; what
 is done is in a file of one JSON line a vehicle, and a run goes on where the last one stopped.
-``--only K`` does one vehicle and shows all that is known of it.
+``--only K`` does one vehicle and shows all that is known of it; ``--table`` of files prints what is
+in them.
 
 Of each vehicle equilibria are followed in the speed and certified on the exact equations, a small
 chart is made in speed and stiffness, the first Hopf
@@ -16,12 +17,10 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import signal
 import time
 import traceback
 import warnings
-from collections import Counter
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -30,6 +29,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 import racs_bif as rb
+from benchmarks._outcomes import read, table
 from racs_bif.charts.settings import ChartSettings
 from racs_bif.errors import ConvergenceError, RacsBifError
 from racs_bif.fractional.argument import count_unstable
@@ -38,7 +38,7 @@ from racs_bif.fractional.polish import polish
 from racs_bif.verbs.rebuild import rebuild
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from racs_bif.fractional.laws import Complex, Law
     from racs_bif.fractional.system import System
@@ -459,35 +459,6 @@ def _counts(system: System) -> Iterator[int]:
                 yield count_unstable(system.exact, X, p).unstable
 
 
-def table(rows: Iterable[dict[str, Any]]) -> str:
-    """Return the outcomes by part as a Markdown table; numbers in messages are left out."""
-    counts: Counter[tuple[str, str, str]] = Counter()
-    examples: dict[tuple[str, str, str], int] = {}
-    for row in rows:
-        for part, (outcome, detail) in row["parts"].items():
-            plain = "" if outcome == "ok" else re.sub(r"-?\d[\d.]*(e[+-]?\d+)?", "#", detail)
-            key = part, outcome, plain.replace("|", "/").replace("\n", " ")[:150]
-            counts[key] += 1
-            examples.setdefault(key, row["index"])
-    lines = ["| part | outcome | vehicles | reason | for example |", "|---|---|---:|---|---:|"]
-    for key in sorted(counts, key=lambda k: (k[0], k[1] != "ok", k[1], -counts[k])):
-        part, outcome, detail = key
-        lines.append(f"| {part} | {outcome} | {counts[key]} | {detail} | {examples[key]} |")
-    return "\n".join(lines)
-
-
-def read(path: Path) -> list[dict[str, Any]]:
-    """Return the rows of a file, the last one of each vehicle; a line cut off is left out."""
-    rows = {}
-    for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
-        try:
-            row = json.loads(line)
-        except json.JSONDecodeError:
-            continue
-        rows[row["index"]] = row
-    return list(rows.values())
-
-
 def _bad(row: dict[str, Any]) -> bool:
     return any(
         outcome in {_UNEXPECTED, "error", "too long"} for outcome, _ in row["parts"].values()
@@ -512,13 +483,17 @@ def main() -> None:
         help="examine again what went wrong or took too long",
     )
     parser.add_argument("--only", type=int, help="examine this vehicle alone")
+    parser.add_argument("--table", type=Path, nargs="+", help="print what is in these files")
     options = parser.parse_args()
+    if options.table:
+        print(table(read(options.table)))
+        return
     if options.only is not None:
         print(draw(options.only))
         row = examine(options.only, share=1, seconds=options.limit)
         print(json.dumps(row, indent=1), *row.get("tracebacks", ()), sep="\n")
         return
-    done = {row["index"] for row in read(options.file) if not (options.again and _bad(row))}
+    done = {row["index"] for row in read([options.file]) if not (options.again and _bad(row))}
     with options.file.open("a", encoding="utf-8") as file:
         file.write("\n" if done else "")  # after a line that was cut off
         for index in range(options.part[0], options.count, options.part[1]):
@@ -526,7 +501,7 @@ def main() -> None:
                 row = examine(index, share=options.share, seconds=options.limit)
                 file.write(json.dumps(row) + "\n")
                 file.flush()
-    print(table(read(options.file)))
+    print(table(read([options.file])))
 
 
 if __name__ == "__main__":

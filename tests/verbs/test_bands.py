@@ -1,8 +1,5 @@
 """Realisations whose band does not hold what decides stability."""
 
-import runpy
-from pathlib import Path
-
 import pytest
 
 import racs_bif as rb
@@ -24,6 +21,15 @@ def slow():
         parameters={"mu": -0.01, "alpha": 0.5},
         elements=[("w", "y", "s**alpha")],
     )
+
+
+@pytest.fixture(scope="module")
+def vehicle(benchmark_module):
+    def load(index):
+        variant, values = benchmark_module("random_vehicles").draw(index)
+        return rb.load_model("racs", parameters=values, variant=variant)
+
+    return load
 
 
 def test_a_band_is_widened_until_the_exact_equations_agree(slow):
@@ -58,9 +64,9 @@ def test_where_no_band_settles_it_that_is_said(slow, monkeypatch):
     assert branch.early
 
 
-def test_where_no_band_settles_it_stability_is_not_told(monkeypatch):
+def test_where_no_band_settles_it_stability_is_not_told(vehicle, monkeypatch):
     """Of this vehicle two roots slower than 1e-6 rad/s cross where no realisation has them."""
-    system = _vehicle(149)
+    system = vehicle(149)
     monkeypatch.setattr(bands, "_LIMITS", (0.5, 2.0))
     branch = rb.continue_equilibria(system, "u", (9.5, 11.0))
     unknown = branch.unstable == -1
@@ -74,9 +80,9 @@ def test_where_no_band_settles_it_stability_is_not_told(monkeypatch):
     assert not any("unstable roots, the exact model has" in check.finding for check in failures)
 
 
-def test_where_no_band_settles_it_refused_hopf_points_are_left_out():
+def test_where_no_band_settles_it_refused_hopf_points_are_left_out(vehicle):
     """Beside a fold of this vehicle the realisation has a Hopf point, the exact equations none."""
-    branch = rb.continue_equilibria(_vehicle(1715), "u", (9.6, 9.8))
+    branch = rb.continue_equilibria(vehicle(1715), "u", (9.6, 9.8))
     assert [point.label for point in branch.special] == ["LP"]
     assert "Left out, as the exact equations have no such Hopf point: H1 at u = 9.728" in (
         branch.stopped
@@ -89,9 +95,9 @@ def test_where_no_band_settles_it_refused_hopf_points_are_left_out():
     assert all("no stability" in text or "-1 reported" in text for text in findings)
 
 
-def test_roots_that_cross_twice_between_special_points_are_seen():
+def test_roots_that_cross_twice_between_special_points_are_seen(vehicle):
     """Two roots of this vehicle, slower than any band, are unstable in a short piece of it."""
-    branch = rb.continue_equilibria(_vehicle(1046), "u", (3.0, 5.0))
+    branch = rb.continue_equilibria(vehicle(1046), "u", (3.0, 5.0))
     unknown = branch.parameter[branch.unstable == -1]
     assert len(unknown)
     assert ((unknown > 3.98) & (unknown < 4.3)).all()  # above the Hopf point at 3.983
@@ -101,21 +107,15 @@ def test_roots_that_cross_twice_between_special_points_are_seen():
     assert all("no stability" in text or "-1 reported" in text for text in findings)
 
 
-def test_where_no_band_settles_it_stability_is_not_told_beside_a_fold():
+def test_where_no_band_settles_it_stability_is_not_told_beside_a_fold(vehicle):
     """Two roots of this vehicle cross between a fold and the point before it, slower than 1e-8."""
-    branch = rb.continue_equilibria(_vehicle(1838), "u", (15.5, 16.3))
+    branch = rb.continue_equilibria(vehicle(1838), "u", (15.5, 16.3))
     fold = branch["LP1"].index
     assert branch.early
     assert -1 in branch.unstable[[fold - 1, fold + 1]]
     findings = [check.finding for check in rb.certify(branch, "complete").failures]
     assert findings
     assert all("no stability" in text or "-1 reported" in text for text in findings)
-
-
-def _vehicle(index):
-    path = Path(__file__).parents[2] / "benchmarks" / "random_vehicles.py"
-    variant, values = runpy.run_path(str(path))["draw"](index)
-    return rb.load_model("racs", parameters=values, variant=variant)
 
 
 @pytest.mark.parametrize(
@@ -126,8 +126,8 @@ def _vehicle(index):
         (168, (14.0, 18.0), 15.0513714326, 0.000293267),  # no fold: a root is slow
     ],
 )
-def test_slow_hopf_points_of_vehicles_are_found(index, span, u, omega):
-    branch = rb.continue_equilibria(_vehicle(index), "u", span)
+def test_slow_hopf_points_of_vehicles_are_found(vehicle, index, span, u, omega):
+    branch = rb.continue_equilibria(vehicle(index), "u", span)
     assert "band was widened" in branch.stopped
     exact = [point.exact for point in branch.special if point.label == "H"]
     nearest = min(exact, key=lambda point: abs(point.parameters["u"] - u))
@@ -136,13 +136,13 @@ def test_slow_hopf_points_of_vehicles_are_found(index, span, u, omega):
     assert rb.certify(branch, "complete").holds
 
 
-def test_what_rounding_hides_at_a_fold_is_no_reason_to_widen_for_ever():
+def test_what_rounding_hides_at_a_fold_is_no_reason_to_widen_for_ever(vehicle):
     """Of this vehicle a Hopf point of 6e-4 rad/s is 3e-10 beside a fold.
 
     The realisation that finds it has two more unstable eigenvalues within 1e-11 of the fold, where
     an equilibrium is known to half its digits.
     """
-    branch = rb.continue_equilibria(_vehicle(640), "u", (9.7, 10.0))
+    branch = rb.continue_equilibria(vehicle(640), "u", (9.7, 10.0))
     low, _ = branch.system.realisation.band
     hopf = next(p for p in branch.special if p.label == "H" and p.omega < 0.1)
     assert not branch.early
@@ -152,9 +152,9 @@ def test_what_rounding_hides_at_a_fold_is_no_reason_to_widen_for_ever():
     assert rb.certify(branch, "complete").holds
 
 
-def test_the_order_is_raised_for_a_hopf_point_far_from_the_exact_one():
+def test_the_order_is_raised_for_a_hopf_point_far_from_the_exact_one(vehicle):
     """Two Hopf points of this vehicle nearly meet, and the default order is 1.4 % off."""
-    branch = rb.continue_equilibria(_vehicle(959), "u", (18.0, 23.0))
+    branch = rb.continue_equilibria(vehicle(959), "u", (18.0, 23.0))
     hopf = min((p for p in branch.special if p.label == "H"), key=lambda p: p.exact.parameters["u"])
     assert "order was raised to 1.5 times its default" in branch.stopped
     assert hopf.exact.parameters["u"] == pytest.approx(19.9055032487, rel=1e-10)

@@ -4,8 +4,6 @@
 """
 
 import os
-import runpy
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,7 +16,6 @@ from racs_bif.errors import UsageError
 from racs_bif.results.branch import Profile
 from racs_bif.shelf.load import system_of
 
-PATH = Path(__file__).parents[1] / "benchmarks" / "random_vehicles.py"
 PARTS = 10
 EACH = int(os.environ.get("RACS_BIF_VEHICLES", "50")) // PARTS
 PHASES = (Phase.explicit, Phase.generate)
@@ -26,8 +23,8 @@ PHASES = (Phase.explicit, Phase.generate)
 
 
 @pytest.fixture(scope="module")
-def bench():
-    return SimpleNamespace(**runpy.run_path(str(PATH)))
+def bench(benchmark_module):
+    return benchmark_module("random_vehicles")
 
 
 @pytest.fixture
@@ -154,7 +151,7 @@ def test_a_run_goes_on_where_it_was_cut_off(bench, tmp_path):
     path = tmp_path / "rows.jsonl"
     row = '{"index": 0, "parts": {"continue": ["ok", ""], "chart": ["early", "at u = 3.5|e"]}}'
     path.write_text(f'{row}\n{row.replace("0", "1", 1)}\n{{"index": 2, "par')
-    rows = bench.read(path)
+    rows = bench.read([path])
     assert [r["index"] for r in rows] == [0, 1]
     assert bench.table(rows).splitlines()[2:] == [
         "| chart | early | 2 | at u = #/e | 0 |",
