@@ -16,7 +16,6 @@ REASONS: Final = (
         "No wider band settles it|no band settles it",
         "no realisation's band settles it: what the exact equations refuse is left out",
     ),
-    ("outside the realisation's band", "a Hopf point is outside the widest band"),
     ("not on the default's cells", "a boundary is missed on few cells, but not on the default's"),
     ("counts differ in", "counts differ in a few places for no boundary that was found"),
     (
@@ -29,6 +28,7 @@ REASONS: Final = (
     ("period grew past its limit", "the period grows, as it does near a homoclinic orbit"),
     ("more sharply than the smallest step", "the branch has a corner"),
     ("more than .* s$", "ended by the clock"),
+    ("outside the realisation's band", "slower than the realisation's band"),
 )
 """What messages say, in few words: the first that is found."""
 
