@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from racs_bif.charts.edges import Edge
 from racs_bif.charts.lattice import NOTHING
 from racs_bif.charts.pieces import own_pieces
 from racs_bif.charts.plane import Plane
@@ -170,3 +171,23 @@ def test_settings_out_of_range(wrong):
 def test_steps_out_of_range():
     with pytest.raises(UsageError, match="'step'"):
         ChartSettings(step=0.0)
+
+
+def test_an_imperfect_pitchfork_costs_little(monkeypatch):
+    """Nearly a static boundary: the determinant changes its sign where equilibria are lost."""
+    model = model_from_strings(
+        "imperfect",
+        {"x": "mu*x - x**3 + h", "y": "-k*y"},
+        parameters={"mu": -1.0, "h": 1e-14, "k": 1.0},
+    )
+    plane = Plane(system_of(model), ("mu", "k"), ((-1.0, 1.1), (1.0, 2.0)))
+    follow, asked = Edge.follow, []
+
+    def counted(edge, shares):
+        asked.append(len(shares))
+        return follow(edge, shares)
+
+    monkeypatch.setattr(Edge, "follow", counted)
+    found = search(plane, ChartSettings(coarse=2, depth=3))
+    assert found.unexplained
+    assert len(asked) < 800  # 4,008 when each edge was halved twelve times, and asked again
