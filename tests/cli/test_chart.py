@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from glob import glob
 
 import pytest
 
@@ -106,17 +107,21 @@ def test_a_map_leaves_no_tiles(chart, tmp_path):
 
 
 def test_a_run_that_was_killed_goes_on_and_gives_the_same_file(chart, model, tmp_path):
-    options = (*BOX, "--map", "damping", "--cells", "192", "192")
+    options = (*BOX, "--map", "damping", "--cells", "320", "256")
     tiles = tmp_path / "killed" / "tiles"
+
+    def finished():
+        # pathlib's own glob fails where the folder comes or goes while it looks
+        return glob(str(tiles / "tile_*.npz"))
+
     command = [sys.executable, "-m", "racs_bif", "chart", "a", "b", *options]
     command += ["--model", str(model), "--out", str(tmp_path / "killed"), "--quiet"]
     with subprocess.Popen(command) as running:
-        while len(list(tiles.glob("tile_*.npz"))) < 2:
+        while len(finished()) < 2:
             assert running.poll() is None, "it ended before it could be killed"
             time.sleep(0.002)
         running.send_signal(signal.SIGKILL)
-    kept = {p.name: p.stat().st_mtime_ns for p in tiles.glob("tile_*.npz")}
-    assert 2 <= len(kept) < 9
+    assert 2 <= len(finished()) < 20
     assert not (tmp_path / "killed" / "chart.nc").exists()
 
     assert chart(*options, "--resume", out="killed").status == 0
