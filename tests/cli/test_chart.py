@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from glob import glob
+from contextlib import suppress
 
 import pytest
 
@@ -107,12 +107,13 @@ def test_a_map_leaves_no_tiles(chart, tmp_path):
 
 
 def test_a_run_that_was_killed_goes_on_and_gives_the_same_file(chart, model, tmp_path):
-    options = (*BOX, "--map", "damping", "--cells", "320", "256")
+    options = (*BOX, "--map", "damping", "--cells", "256", "256")
     tiles = tmp_path / "killed" / "tiles"
 
     def finished():
-        # pathlib's own glob fails where the folder comes or goes while it looks
-        return glob(str(tiles / "tile_*.npz"))
+        with suppress(FileNotFoundError):  # the folder may come or go while it is looked into
+            return list(tiles.glob("tile_*.npz"))
+        return []
 
     command = [sys.executable, "-m", "racs_bif", "chart", "a", "b", *options]
     command += ["--model", str(model), "--out", str(tmp_path / "killed"), "--quiet"]
@@ -121,7 +122,7 @@ def test_a_run_that_was_killed_goes_on_and_gives_the_same_file(chart, model, tmp
             assert running.poll() is None, "it ended before it could be killed"
             time.sleep(0.002)
         running.send_signal(signal.SIGKILL)
-    assert 2 <= len(finished()) < 20
+    assert 2 <= len(finished()) < 16
     assert not (tmp_path / "killed" / "chart.nc").exists()
 
     assert chart(*options, "--resume", out="killed").status == 0
