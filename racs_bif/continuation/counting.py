@@ -97,9 +97,8 @@ def hides_others(problem: Problem, a: Point, b: Point, events: Sequence[tuple[Po
 def _strays(problem: Problem, before: Spectrum, after: Spectrum) -> bool:
     """Say whether a pair changes side that can be told from all others at both ends."""
     pairs = before[before.imag > 0.0]
-    if not 1 < min(len(before), len(after)) <= max(len(before), len(after)) <= _CHEAP:
-        return False
-    if not len(pairs):
+    cheap = 1 < min(len(before), len(after)) <= max(len(before), len(after)) <= _CHEAP
+    if not (cheap and len(pairs) and np.isfinite(before).all() and np.isfinite(after).all()):
         return False
     distance = np.abs(pairs[:, None] - after[None, :])
     nearest = distance.argmin(axis=1)

@@ -112,6 +112,7 @@ def pairs(*upper):
         (pairs(0.1 + 0.2j, 0.1 + 14j), False),  # it may be another one
         (pairs(0.1 + 0.2j, 0.1 + 9j, -0.1 + 9.1j), False),  # it may be the other one
         (pairs(0.1 + 0.2j), False),
+        (np.append(pairs(0.1 + 0.2j, 0.1 + 9j), -np.inf), False),  # too poor to follow any
     ],
 )
 def test_a_pair_that_crosses_beside_an_event_is_seen(end, hides):
