@@ -26,9 +26,9 @@ REASONS: Final = (
     ("static boundary could not be traced", "a static boundary could not be traced"),
     ("no longer resolves", "more turns or shorter peaks than the discretisation resolves"),
     ("period grew past its limit", "the period grows, as it does near a homoclinic orbit"),
-    ("more sharply than the smallest step", "the branch has a corner"),
+    ("more sharply than the smallest step", "the branch turns more sharply than the smallest step"),
     ("more than .* s$", "ended by the clock"),
-    ("outside the realisation's band", "slower than the realisation's band"),
+    ("outside the realisation's band", "outside the realisation's band"),
 )
 """What messages say, in few words: the first that is found."""
 

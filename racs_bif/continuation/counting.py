@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _CHEAP = 200
 _CLEAR = 4.0
-"""An eigenvalue is followed that moves by less than this part of the distance to others."""
+"""An eigenvalue is followed where the others are this many times farther away than it moves."""
 
 
 def unexplained(problem: Problem, a: Point, b: Point, crossings: Iterable[int]) -> str:
