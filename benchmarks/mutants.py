@@ -92,7 +92,11 @@ def _show(
     given: argparse.Namespace,
     tell: Callable[[str], None],
 ) -> None:
-    text, old, new = made(mutant)
+    try:
+        text, old, new = made(mutant)
+    except AttributeError:  # cosmic-ray does not replace `a.b` among the exceptions caught
+        tell("made " + json.dumps({"outcome": "no mutant"}))
+        return
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
