@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from racs_bif.charts.problems import FoldBoundary, HopfBoundary, StaticBoundary
+from racs_bif.charts.problems import (
+    FoldBoundary,
+    HopfBoundary,
+    SingularBoundary,
+    StaticBoundary,
+)
 from racs_bif.continuation.settings import StepSettings
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.trace import trace
@@ -25,6 +30,7 @@ if TYPE_CHECKING:
     from racs_bif.equilibria.curve_problem import CurveProblem
     from racs_bif.symbolic.field import Array
 
+AnyBoundary = HopfBoundary | FoldBoundary | StaticBoundary | SingularBoundary
 BETWEEN = 4
 """Stretches of the line between two points."""
 _NAMED = ("GH", "UZ")
@@ -39,7 +45,7 @@ class Seed:
 
     Parameters
     ----------
-    kind : {"hopf", "static", "fold"}
+    kind : {"hopf", "static", "fold", "singular"}
         Which.
     X : array (size,)
         States and outputs of the elements.
@@ -70,8 +76,9 @@ class Boundary:
 
     Parameters
     ----------
-    kind : {"hopf", "static", "fold"}
-        A pair crosses the imaginary axis, a real root crosses zero, or the equilibrium ends.
+    kind : {"hopf", "static", "fold", "singular"}
+        A pair crosses the imaginary axis, a real root crosses zero, the equilibrium ends, or the
+        mass matrix is singular.
     values : array (m, 2)
         Parameters.
     states : array (m, size)
@@ -160,16 +167,15 @@ def trace_boundary(
     return _boundary(plane, seed, problem, found)
 
 
-def _problem(
-    plane: Plane, seed: Seed
-) -> tuple[HopfBoundary | FoldBoundary | StaticBoundary, Array]:
+def _problem(plane: Plane, seed: Seed) -> tuple[AnyBoundary, Array]:
     system = plane.system
-    kinds: dict[str, type[HopfBoundary | FoldBoundary | StaticBoundary]] = {
+    kinds: dict[str, type[AnyBoundary]] = {
         "hopf": HopfBoundary,
         "static": StaticBoundary,
         "fold": FoldBoundary,
+        "singular": SingularBoundary,
     }
-    extra = {"hopf": [seed.omega], "static": [0.0], "fold": []}[seed.kind]
+    extra = {"hopf": [seed.omega], "static": [0.0]}.get(seed.kind, [])
     # Static gains are exact: folds and static losses are those of the exact model, whose second
     # derivatives are known.
     exact = system.exact if seed.kind == "hopf" else ExactModel(system.field)
@@ -192,7 +198,7 @@ def _tangent(problem: CurveProblem, z: Array, plane: Plane) -> Array:
 def _boundary(
     plane: Plane,
     seed: Seed,
-    problem: HopfBoundary | FoldBoundary | StaticBoundary,
+    problem: AnyBoundary,
     found: Trace,
 ) -> Boundary:
     n = problem.n

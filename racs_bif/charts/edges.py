@@ -10,9 +10,9 @@ import numpy as np
 from racs_bif.charts.boundary import Seed
 from racs_bif.charts.crossing import alike, between, intersections
 from racs_bif.charts.edge_path import EdgePath
+from racs_bif.charts.ends import ENDS, end_seed
 from racs_bif.charts.lattice import NOTHING, UNCOUNTED, Lattice, Node
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.exact_fold import solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.numerics.bracketing import root
 
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _HALVINGS = 12
 _BESIDE = 1e-4
 _BEYOND = 1e-6
+_ALMOST = 0.05
+"""Share of an edge by which boundaries where the equilibrium ends may pass beside it."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,7 @@ class Crossing:
     boundary : int
         Which boundary.
     jump : int
-        Change of the count along the edge; 0 for a fold.
+        Change of the count along the edge; 0 where the equilibrium ends.
     """
 
     share: float
@@ -74,7 +76,7 @@ class Edge:
     """
 
     def __init__(self, lattice: Lattice, start: Node, end: Node) -> None:
-        if start.count == NOTHING:
+        if not start.found:
             start, end = end, start
         self.lattice = lattice
         self.a, self.b = start, end
@@ -102,7 +104,7 @@ class Edge:
     @property
     def ends(self) -> bool:
         """Whether the equilibrium ends between its ends."""
-        return self.a.count != NOTHING and self.b.count == NOTHING
+        return self.a.found and not self.b.found
 
     def follow(self, shares: Array) -> tuple[Array, Array]:
         """Return equilibria (size, k) at shares of it, continued from its start, and how far."""
@@ -145,7 +147,7 @@ class Edge:
     def explained(self, boundaries: list[Boundary]) -> bool:
         """Say whether the boundaries account for how the ends differ."""
         if self.ends:
-            return any(boundaries[c.boundary].kind == "fold" for c in self.crossings(boundaries))
+            return any(boundaries[c.boundary].kind in ENDS for c in self.crossings(boundaries))
         if not self.counted:
             return True
         crossed = self.crossings(boundaries)
@@ -154,7 +156,7 @@ class Edge:
     def seed(self, boundaries: list[Boundary]) -> Seed | None:
         """Return a point of a boundary that is not there yet, None where none is found."""
         if self.ends:
-            return self._fold()
+            return end_seed(self)
         crossed = self.crossings(boundaries)
 
         def explained(share: float) -> int:
@@ -219,7 +221,7 @@ class Edge:
             slack = 1e-9
             inside = bracket.low - slack <= hopf.value <= bracket.high + slack
             if inside and self._same_sheet(hopf.value, hopf.X):
-                return Seed("hopf", hopf.X, self._place(hopf.value), hopf.omega)
+                return Seed("hopf", hopf.X, self.place(hopf.value), hopf.omega)
         return None
 
     def _static(self, bracket: _Bracket) -> Seed | None:
@@ -230,7 +232,7 @@ class Edge:
             X, reached = self.follow(np.array([share]))
             if reached[0] < 1.0:
                 return share, float("nan")
-            at = self._place(share)[:, None]
+            at = self.place(share)[:, None]
             jacobian = sheet.equations(self.lattice.plane.vectors(at))(X)[1][0]
             scale = np.linalg.norm(jacobian, axis=1, keepdims=True)
             return share, float(np.linalg.det(jacobian / np.where(scale > 0.0, scale, 1.0)))
@@ -244,22 +246,10 @@ class Edge:
             return None
         share = 0.5 * (found[0] + found[1])
         X, _ = self.follow(np.array([share]))
-        return Seed("static", X[:, 0], self._place(share))
+        return Seed("static", X[:, 0], self.place(share))
 
-    def _fold(self) -> Seed | None:
-        X, reached = self.follow(np.ones(1))
-        if reached[0] == 1.0:
-            return None
-        exact = self.lattice.plane.system.exact
-        try:
-            fold = solve_fold(exact, self.path, X[:, 0], float(reached[0]))
-        except (ConvergenceError, ArithmeticError, np.linalg.LinAlgError):
-            return None
-        if not -_BEYOND <= fold.value <= 1.0 + _BEYOND:
-            return None
-        return Seed("fold", fold.X, self._place(fold.value))
-
-    def _place(self, share: float) -> Array:
+    def place(self, share: float) -> Array:
+        """Return the place (2,) at a share of it."""
         return np.clip(self.start + share * (self.end - self.start), 0.0, 1.0)
 
     def _same_sheet(self, share: float, X: Array) -> bool:
@@ -274,7 +264,7 @@ class Edge:
             ends = self.start[:, None], self.end[:, None]
             _, shares, places = intersections(*ends, boundary)
             for share, place in zip(shares.tolist(), places.tolist(), strict=True):
-                near = np.hypot(*(self._place(share) - seed.place)) < 10.0 * _BESIDE
+                near = np.hypot(*(self.place(share) - seed.place)) < 10.0 * _BESIDE
                 omega = between(boundary.omega, place)
                 if near and (seed.kind != "hopf" or abs(omega - seed.omega) < 0.02 * omega):
                     return True
@@ -288,17 +278,20 @@ def cross(edges: Sequence[Edge], boundaries: list[Boundary]) -> None:
         if new:
             for edge in new:
                 edge.crossed.append([])
-            fold = boundary.kind == "fold"
-            asked = [edge for edge in new if edge.counted or (fold and edge.ends)]
+            last = boundary.kind in ENDS
+            asked = [edge for edge in new if edge.counted or (last and edge.ends)]
             if asked:
                 _crossed(asked, boundary, k)
 
 
 def _crossed(edges: Sequence[Edge], boundary: Boundary, number: int) -> None:
     start, end = (np.array([getattr(edge, at) for edge in edges]).T for at in ("start", "end"))
+    if boundary.kind in ENDS:
+        # a node may be on the boundary, or as near as the line between its points is to it
+        start, end = start - _ALMOST * (end - start), end + _ALMOST * (end - start)
     which, shares, places = intersections(start, end, boundary)
     found = list(zip(which.tolist(), shares.tolist(), places.tolist(), strict=True))
-    if boundary.kind == "fold" or not found:
+    if boundary.kind in ENDS or not found:
         for e, share, _ in found:
             edges[e].crossed[-1].append(Crossing(share, number, 0))
         return
@@ -317,7 +310,7 @@ def _crossed(edges: Sequence[Edge], boundary: Boundary, number: int) -> None:
 
 def torn(edges: Sequence[Edge]) -> list[bool]:
     """Say of edges whether the equilibria at their ends are not continued into each other."""
-    both = [k for k, edge in enumerate(edges) if NOTHING not in {edge.a.count, edge.b.count}]
+    both = [k for k, edge in enumerate(edges) if edge.a.found and edge.b.found]
     told = [False] * len(edges)
     if not both:
         return told

@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from racs_bif.charts.plane import Plane
     from racs_bif.symbolic.field import Array
 
-NOTHING, UNCOUNTED = -2, -1
-"""No equilibrium was found; there is one, but its roots cannot be counted."""
+BEYOND, NOTHING, UNCOUNTED = -3, -2, -1
+"""The mass matrix is singular on the way there; no equilibrium was found; there is one, but its
+roots cannot be counted."""
 Key = tuple[int, int]
 _AROUND = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
 _SHORT_OF = 0.97
@@ -39,7 +40,7 @@ class Node:
     Parameters
     ----------
     count : int
-        Unstable roots, or `NOTHING`, or `UNCOUNTED`.
+        Unstable roots, or `BEYOND`, `NOTHING`, `UNCOUNTED`.
     X : array (size,)
         The equilibrium.
     margin, static : float
@@ -56,6 +57,11 @@ class Node:
     static: float
     omega: float
     place: Array
+
+    @property
+    def found(self) -> bool:
+        """Whether there is an equilibrium."""
+        return self.count > NOTHING
 
 
 class Counter:
@@ -123,13 +129,13 @@ class Lattice:
 
     def known(self, key: Key) -> bool:
         """Say whether there is an equilibrium at a node."""
-        return key in self.nodes and self.nodes[key].count != NOTHING
+        return key in self.nodes and self.nodes[key].found
 
     @property
     def scale(self) -> Array:
         """Largest magnitudes (size,) of the states at the nodes."""
         if self._scale is None:
-            X = np.array([node.X for node in self.nodes.values() if node.count != NOTHING])
+            X = np.array([node.X for node in self.nodes.values() if node.found])
             scale = np.abs(X).max(axis=0)
             self._scale = np.maximum(scale, 1e-9 * max(float(scale.max()), 1e-3))
         return self._scale
@@ -195,15 +201,29 @@ class Lattice:
             if len(pending) < before:
                 pending = self._spread(pending, spacing, 0.0)
         nowhere = np.full(self.sheet.size, np.nan)
-        for key in pending:
-            self.nodes[key] = Node(NOTHING, nowhere, np.nan, np.nan, np.nan, self.place(key))
+        counts = self._why_not(pending)
+        for key, count in zip(pending, counts, strict=True):
+            self.nodes[key] = Node(count, nowhere, np.nan, np.nan, np.nan, self.place(key))
+
+    def _why_not(self, keys: list[Key]) -> list[int]:
+        """Return why there is no equilibrium at nodes: `BEYOND` or `NOTHING`."""
+        nodes = [node for node in self.nodes.values() if node.found]
+        if not keys or not nodes:
+            return [NOTHING] * len(keys)
+        at, known = np.array([self.place(key) for key in keys]), np.array([n.place for n in nodes])
+        nearest = np.hypot(*(at[:, None] - known).T).argmin(axis=0)
+        begun, P = np.array([nodes[k].X for k in nearest]).T, self.plane.vectors(at.T)
+        X, found, _ = self.sheet.newton(begun, P)
+        X = np.where(found, X, begun)
+        same = self.sheet.side(X, P) == self.sheet.side(begun, self.plane.vectors(known[nearest].T))
+        return [NOTHING if here else BEYOND for here in same]
 
     def along(self, line: Array) -> list[Node]:
         """Return nodes just before the places (N, 2) of a fold, on the side of the equilibrium.
 
         They are kept in `beside`; places that no node nearby leads to are left out.
         """
-        nodes = [node for node in self.nodes.values() if node.count != NOTHING]
+        nodes = [node for node in self.nodes.values() if node.found]
         at = np.array([node.place for node in nodes])
         nearest = np.hypot(*(line[:, None] - at).T).argmin(axis=0)
         start = at[nearest].T

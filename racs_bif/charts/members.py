@@ -96,6 +96,17 @@ class Members:
             core[:, rows, columns] = _wide(compiled.varying_jacobian(X, padded), X).T
         return core
 
+    def inertia(self, X: Array, P: Array) -> Array:
+        """Return what the determinants (N,) of the mass matrix are proportional to."""
+        if not self.compiled.has_inertia:
+            return np.ones(X.shape[1])
+        return self.compiled.inertia(X, self.compiled.padded(P))
+
+    def side(self, X: Array, P: Array) -> Array:
+        """Return the signs (N,) of the determinants of the mass matrix."""
+        with np.errstate(all="ignore"):
+            return np.sign(self.inertia(X, P))
+
     def equations(self, P: Array) -> Callable[[Array], tuple[Array, Array]]:
         """Return the equilibrium equations at parameters P (np, N).
 

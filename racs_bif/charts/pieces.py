@@ -9,11 +9,12 @@ import numpy as np
 
 from racs_bif.charts.boundary import BETWEEN, Boundary
 from racs_bif.charts.crossing import alike
-from racs_bif.charts.lattice import NOTHING, Lattice
+from racs_bif.charts.ends import ENDS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from racs_bif.charts.lattice import Lattice
     from racs_bif.symbolic.field import Array
 
 _NEAREST = 3
@@ -30,7 +31,7 @@ def own_pieces(lattice: Lattice, boundary: Boundary) -> list[Boundary]:
     boundary : Boundary
         A boundary; one where the equilibrium ends is returned as it is.
     """
-    if boundary.kind == "fold" or len(boundary.values) < 2:
+    if boundary.kind in ENDS or len(boundary.values) < 2:
         return [boundary]
     own = _belongs(lattice, boundary)
     if own.all():
@@ -65,7 +66,7 @@ def _piece(boundary: Boundary, first: int, stop: int) -> Boundary:
 
 def _belongs(lattice: Lattice, boundary: Boundary) -> NDArray[np.bool_]:
     """Return which points are reached from the nearest nodes, by continuing their equilibria."""
-    nodes = [node for node in lattice.nodes.values() if node.count != NOTHING]
+    nodes = [node for node in lattice.nodes.values() if node.found]
     places = np.array([node.place for node in nodes])
     at = lattice.plane.places(boundary.values.T)
     order = np.argsort(np.hypot(*(at[:, :, None] - places.T[:, None, :])), axis=1, kind="stable")

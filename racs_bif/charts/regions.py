@@ -19,6 +19,8 @@ _SAMPLES = 60
 _ALMOST = 0.95
 _SLIVER = 1e-6
 _EDGE = 1e-7
+_ON = 1e-4
+"""Nodes nearer than this to a region's outline are on it, as near as it is drawn."""
 _MIXED = 0.1
 """Share of nodes with another count from which a region has none: nothing parts its equilibria."""
 
@@ -33,7 +35,7 @@ class Region:
         Where, in the unit square.
     count : int
         Unstable roots; `racs_bif.charts.lattice.NOTHING` where no equilibrium was found, negative
-        too where it cannot be told.
+        too behind a singular mass matrix, and where it cannot be told.
     place : array (2,)
         Well inside it.
     nodes, disagreeing : int
@@ -68,12 +70,18 @@ def regions(lattice: Lattice, boundaries: list[Boundary]) -> tuple[Region, ...]:
             continue
         inside = np.flatnonzero(face.contains(places))
         place = _middle(face)
-        if len(inside):
-            room = _room(face, places[inside])
-            count = int(counts[inside[int(np.argmax(room))]])
-        else:
-            count = _counted(lattice, place)
-        known = counts[inside][counts[inside] != UNCOUNTED]
+        room = _room(face, places[inside]) if len(inside) else np.zeros(0)
+        count = (
+            int(counts[inside[int(np.argmax(room))]]) if len(inside) else _counted(lattice, place)
+        )
+        # on a boundary a node may belong to either side
+        known = counts[inside[room > _ON]]
+        known = known[known != UNCOUNTED]
+        lost = known[known <= NOTHING]
+        if count <= NOTHING and len(lost):
+            # why an equilibrium was not found cannot be told as surely as that it was not
+            count = int(np.median(lost))
+            known = np.where(known <= NOTHING, count, known)
         wrong = int(np.count_nonzero(known != count))
         if wrong > _MIXED * len(inside):
             count = UNCOUNTED
@@ -105,7 +113,7 @@ def _room(face: Face, places: Array) -> Array:
 
 def _counted(lattice: Lattice, place: Array) -> int:
     """Return the count at a place, continued from the nearest node that leads there."""
-    nodes = [node for node in lattice.nodes.values() if node.count != NOTHING]
+    nodes = [node for node in lattice.nodes.values() if node.found]
     nodes.sort(key=lambda node: float(np.hypot(*(node.place - place))))
     for node in nodes[:4]:
         at = place[:, None]

@@ -11,7 +11,8 @@ import numpy as np
 
 from racs_bif.charts.boundary import Boundary, Seed, trace_boundary
 from racs_bif.charts.edges import Edge, cross, torn
-from racs_bif.charts.lattice import NOTHING, Key, Lattice
+from racs_bif.charts.ends import ENDS
+from racs_bif.charts.lattice import Key, Lattice
 from racs_bif.errors import ConvergenceError
 
 if TYPE_CHECKING:
@@ -203,7 +204,7 @@ def _tear(found: Search) -> list[EdgeKey]:
 def _keep(found: Search, boundary: Boundary) -> None:
     """Take in a boundary: what it crosses; along a fold look for others that end there."""
     found.boundaries.append(boundary)
-    if boundary.kind == "fold":
+    if boundary.kind in ENDS:
         nodes = found.lattice.along(found.lattice.plane.places(boundary.values.T).T)
         found.chain += [
             Edge(found.lattice, a, b)
@@ -256,7 +257,7 @@ def _hides(found: Search, cell: Cell) -> bool:
     }
     if any(piece in sides for piece in found.unexplained):
         return True
-    counts = {nodes[key].count for key in corners} - {NOTHING}
+    counts = {nodes[key].count for key in corners if nodes[key].found}
     if len(counts) > 1 and h * _BESIDE > found.spacing:
         return True
     if len(counts) != 1 or min(counts) < 0:

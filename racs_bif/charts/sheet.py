@@ -36,7 +36,7 @@ class Sheet(Members):
         """Continue equilibria along straight lines.
 
         Where the determinant changes its sign steps are short: Newton's method would leap over a
-        fold to another equilibrium.
+        fold to another equilibrium. Where that of the mass matrix does, they end.
 
         Parameters
         ----------
@@ -55,15 +55,18 @@ class Sheet(Members):
         X = np.array(X, dtype=float)
         reached, step = np.zeros(X.shape[1]), np.ones(X.shape[1])
         with np.errstate(all="ignore"):
-            parity = np.linalg.slogdet(self.equations(self.plane.vectors(start))(X)[1])[0]
+            P = self.plane.vectors(start)
+            parity, side = np.linalg.slogdet(self.equations(P)(X)[1])[0], self.side(X, P)
         for _ in range(_STEPS):
             moving = np.flatnonzero((reached < 1.0) & (step >= shortest))
             if not len(moving):
                 break
             goal = np.minimum(reached[moving] + step[moving], 1.0)
             at = (1.0 - goal) * start[:, moving] + goal * end[:, moving]
-            tried, found, there = self.newton(X[:, moving], self.plane.vectors(at))
+            P = self.plane.vectors(at)
+            tried, found, there = self.newton(X[:, moving], P)
             found &= (there == parity[moving]) | (step[moving] <= _CAREFUL)
+            found &= self.side(tried, P) == side[moving]
             done = moving[found]
             X[:, done], reached[done] = tried[:, found], goal[found]
             parity[done] = there[found]

@@ -26,9 +26,17 @@ COLOURS: Final = "cividis"
 R. S. Renslow, PLoS ONE 13 (2018) e0199239)."""
 SHADES: Final = ("#ffffff", "#e4e4e4", "#c6c6c6", "#a9a9a9", "#8d8d8d")
 """Fillings for 0, 1, 2, 3 and more unstable roots."""
-HATCHES: Final = {-2: "////", -1: "xxxx"}
-_LINES: Final = {"static": "static loss", "fold": "fold: the equilibrium ends"}
-_STYLES: Final = {"static": (0, (1.0, 1.0)), "fold": (0, (5.0, 1.5))}
+HATCHES: Final = {-3: "....", -2: "////", -1: "xxxx"}
+_LINES: Final = {
+    "static": "static loss",
+    "fold": "fold: the equilibrium ends",
+    "singular": "singular mass matrix",
+}
+_STYLES: Final = {
+    "static": (0, (1.0, 1.0)),
+    "fold": (0, (5.0, 1.5)),
+    "singular": (0, (8.0, 2.0, 1.0, 2.0)),
+}
 _CURVES: Final[dict[str, Any]] = {
     "lpc": (0, (3.0, 1.0, 1.0, 1.0)),
     "pd": (0, (1.5, 1.0)),

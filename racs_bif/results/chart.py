@@ -58,9 +58,9 @@ class ChartBoundary:
 
     Parameters
     ----------
-    kind : {"hopf", "static", "fold"}
-        A pair of roots crosses the imaginary axis, a real root crosses zero, or the equilibrium
-        ends in a fold.
+    kind : {"hopf", "static", "fold", "singular"}
+        A pair of roots crosses the imaginary axis, a real root crosses zero, the equilibrium ends
+        in a fold, or the mass matrix is singular.
     values : array (m, 2)
         The two parameters, SI.
     omega : array (m,)
@@ -108,7 +108,7 @@ class ChartRegion:
     ----------
     unstable : int
         Number of unstable roots; -1 where it could not be counted, -2 where no equilibrium was
-        found.
+        found, -3 where the mass matrix is singular on the way there.
     area : float
         Its share of the plane.
     place : array (2,)
@@ -353,5 +353,5 @@ def describe_count(unstable: int) -> str:
     >>> describe_count(0), describe_count(2), describe_count(-2)
     ('stable', '2 unstable', 'no equilibrium')
     """
-    words = {0: "stable", -1: "unknown", -2: "no equilibrium"}
+    words = {0: "stable", -1: "unknown", -2: "no equilibrium", -3: "beyond singular mass"}
     return words.get(unstable, f"{unstable} unstable")

@@ -187,6 +187,30 @@ class CompiledModel:
             self._jets = JetFunctions(self.sources.main, self.external)
         return self._jets(name, algebra, *groups)
 
+    @property
+    def has_inertia(self) -> bool:
+        """Whether there is a mass matrix that states or parameters may make singular."""
+        return bool(self.meta["inertia"])
+
+    def inertia(self, x: Array, p: Array) -> Array:
+        """Return the determinant of the mass matrix but for a constant factor, () or (N,).
+
+        Where it changes its sign an eigenvalue passes through infinity. Only of models that
+        `has_inertia`.
+        """
+        return np.asarray(self.kernel("inertia")(p, x)[0])
+
+    def forces(self, x: Array, p: Array) -> Array:
+        """Return what the mass matrix is to be divided by, and `inertia`, (n + 1,) or (n + 1, N).
+
+        These are finite where the mass matrix is singular. Only of models that `has_inertia`.
+        """
+        return self.kernel("forces")(p, x)
+
+    def forces_d(self, x: Array, p: Array, dx: Vectors, dp: Vectors) -> Vectors:
+        """Return the derivative of `forces` along (dx, dp)."""
+        return self.kernel("forces_d")(p, x, dx, dp)
+
     def output_values(self, x: Array, p: Array) -> dict[str, Array]:
         """Return the model's outputs by name."""
         return dict(zip(self.outputs, self.kernel("outputs")(p, x), strict=True))

@@ -38,7 +38,8 @@ class Sources:
     main : str
         Right-hand side, Jacobian, parameter derivatives, laws, and the description ``META``.
     forms : str
-        Second and third derivatives, which are loaded when a normal form is asked for.
+        Second and third derivatives, which are loaded when a normal form is asked for, and the
+        equations before a mass matrix is inverted.
     """
 
     main: str
@@ -75,8 +76,9 @@ class _Generator:
         lower = self.lower = Lowering(g, self.symbols, self.fixed, calls)
         inputs = self._element_inputs()
         right = [lower(e) for e in model.equations.values()]
+        self.forces, self.inertia = right, g.one
         if model.mass is not None:
-            right = solve_mass(model, lower, right)
+            right, self.inertia = solve_mass(model, lower, right)
         self.core = [*right, *inputs]
         self.x = [*self.y, *self.zeta]
         self.parameters = [*self.base, *self.through]
@@ -146,13 +148,18 @@ class _Generator:
         main += self._parameter_functions()
         outputs = [self.lower(e) for e in self.model.outputs.values()]
         main.append(self._function("outputs", {"x": self.x}, outputs))
+        varies = self.graph.value(self.inertia) is None
+        if varies:
+            main.append(self._function("inertia", {"x": self.x}, [self.inertia]))
         meta = describe(self.model) | {
             "fixed": pattern.fixed,
             "varying": pattern.varying,
             "law_sizes": [(len(n.exponents), len(d.exponents)) for n, d in self.laws],
             "feedthrough": [not proper for proper in self.proper],
+            "inertia": varies,
         }
-        return Sources(module(main, meta), module(self._forms(), {}))
+        forms = self._forms() + (self._unsolved() if varies else [])
+        return Sources(module(main, meta), module(forms, {}))
 
     def _function(self, name: str, groups: dict[str, Sequence[int]], outputs: list[int]) -> str:
         function = Function(name, groups, outputs)
@@ -210,6 +217,17 @@ class _Generator:
             self._function("core_xx", groups | {"v": v}, second),
             self._function("core_xp", groups | {"dp": dp}, mixed),
             self._function("core_xxx", groups | {"v": v, "w": w}, third),
+        ]
+
+    def _unsolved(self) -> list[str]:
+        """Return the forces and the determinant of a mass matrix that may become singular."""
+        dx, dp = self._directions("dx", self.x), self._directions("dp", self.parameters)
+        values = [*self.forces, self.inertia]
+        slopes = self._derivative(values, [*self.x, *self.parameters], [*dx, *dp])
+        groups: dict[str, Sequence[int]] = {"x": self.x}
+        return [
+            self._function("forces", groups, values),
+            self._function("forces_d", groups | {"dx": dx, "dp": dp}, slopes),
         ]
 
 

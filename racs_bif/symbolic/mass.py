@@ -23,8 +23,8 @@ _MUCH_BETTER = 4.0
 """How many times larger another pivot has to be: rows that are as good stay where they are."""
 
 
-def solve_mass(model: Model, lower: Lowering, right: list[int]) -> list[int]:
-    """Return the nodes of ``mass**-1 @ right``.
+def solve_mass(model: Model, lower: Lowering, right: list[int]) -> tuple[list[int], int]:
+    """Return the nodes of ``mass**-1 @ right``, and of the determinant but for a factor.
 
     Raises
     ------
@@ -45,19 +45,22 @@ def solve_mass(model: Model, lower: Lowering, right: list[int]) -> list[int]:
         [g.mul(g.constant(scale), node) for node in (*left, *side)]
         for scale, left, side in zip(scales, mass, sides, strict=True)
     ]
-    _triangular(g, rows, n)
+    determinant = _triangular(g, rows, n)
     solution = _substituted(g, rows, n)
     if not constant:
-        return [row[0] for row in solution]
-    return [_dot(g, row, right) for row in solution]
+        return [row[0] for row in solution], determinant
+    return [_dot(g, row, right) for row in solution], determinant
 
 
-def _triangular(g: Graph, rows: list[list[int]], n: int) -> None:
-    """Eliminate below the diagonal, in place."""
+def _triangular(g: Graph, rows: list[list[int]], n: int) -> int:
+    """Eliminate below the diagonal, in place; return the determinant of the left part."""
+    determinant = g.one
     for k in range(n):
         for i in range(k + 1, n):
             if rows[i][k] != g.zero:
-                rows[k], rows[i] = _exchanged(g, rows[k], rows[i], k)
+                rows[k], rows[i], sign = _exchanged(g, rows[k], rows[i], k)
+                determinant = g.mul(determinant, sign)
+        determinant = g.mul(determinant, rows[k][k])
         for i in range(k + 1, n):
             if rows[i][k] == g.zero:
                 continue
@@ -66,19 +69,27 @@ def _triangular(g: Graph, rows: list[list[int]], n: int) -> None:
                 g.sub(below, g.mul(factor, above)) if j > k else g.zero
                 for j, (above, below) in enumerate(zip(rows[k], rows[i], strict=True))
             ]
+    return determinant
 
 
-def _exchanged(g: Graph, above: list[int], below: list[int], k: int) -> tuple[list[int], list[int]]:
-    """Return two rows, exchanged wherever the lower one has a much better pivot."""
+def _exchanged(
+    g: Graph, above: list[int], below: list[int], k: int
+) -> tuple[list[int], list[int], int]:
+    """Return two rows, exchanged wherever the lower one has a much better pivot, and a sign.
+
+    The sign is -1 where they are exchanged.
+    """
+    minus = g.constant(-1.0)
     pivot, other = g.value(above[k]), g.value(below[k])
     if pivot is not None and other is not None:
         better = abs(other) > _MUCH_BETTER * abs(pivot)
-        return (below, above) if better else (above, below)
+        return (below, above, minus) if better else (above, below, g.one)
     size = g.mul(g.constant(_MUCH_BETTER), g.unary("fabs", above[k]))
     better_node = g.compare("gt", g.unary("fabs", below[k]), size)
     pairs = list(zip(above, below, strict=True))
     upper = [g.where(better_node, b, a) for a, b in pairs]
-    return upper, [g.where(better_node, a, b) for a, b in pairs]
+    lower = [g.where(better_node, a, b) for a, b in pairs]
+    return upper, lower, g.where(better_node, minus, g.one)
 
 
 def _substituted(g: Graph, rows: list[list[int]], n: int) -> list[list[int]]:

@@ -25,6 +25,7 @@ from racs_bif.units import after, frequency_unit
 from racs_bif.verbs import assemble
 from racs_bif.verbs.bands import Remark, on_a_band_that_holds
 from racs_bif.verbs.contradictions import contradicted, refused, without
+from racs_bif.verbs.inertia import inertia_lost
 from racs_bif.verbs.origin import Origin
 
 if TYPE_CHECKING:
@@ -228,13 +229,14 @@ def as_branch(
     sentence, early = assemble.stopped(found)
     gone = [] if remark.settled else list(refused(system, problem, found))
     found = without(found, gone)
-    sentence += _beyond_band(system, found) + remark.text
+    sentence += inertia_lost(system, problem, found) + _beyond_band(system, found) + remark.text
     columns = assemble.columns(found.points)
     if not remark.settled:
         early, wrong = True, contradicted(system, problem, found, gone)
         columns["stable"] = columns["stable"] & ~wrong
         columns["unstable"] = np.where(wrong, -1, columns["unstable"])
-        sentence += f" Stability is left out at {np.count_nonzero(wrong)} points."
+        if wrong.any():
+            sentence += f" Stability is left out at {np.count_nonzero(wrong)} points."
     if gone:
         names = ", ".join(f"{p.name} at {problem.parameter} = {p.z[-1]:.6g}" for p in gone)
         sentence += f" Left out, as the exact equations have no such Hopf point: {names}."

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from racs_bif.charts.edges import Edge
-from racs_bif.charts.lattice import NOTHING
+from racs_bif.charts.lattice import BEYOND, NOTHING
 from racs_bif.charts.pieces import own_pieces
 from racs_bif.charts.plane import Plane
 from racs_bif.charts.regions import regions
@@ -12,6 +13,7 @@ from racs_bif.charts.search import search
 from racs_bif.charts.settings import ChartSettings
 from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.shelf.load import system_of
+from racs_bif.symbolic.model import FractionalElement, Model, Parameter
 from racs_bif.symbolic.strings import model_from_strings
 
 UNIT = ((0.0, 1.0), (0.0, 1.0))
@@ -104,6 +106,49 @@ def test_where_the_equilibrium_ends(searched):
     b = np.linspace(-0.5, 1.5, 20001)
     there, wedge = np.mean((1.03 + b**2 / 4.0) / 2.03), 0.5**3 / 12.0 / 4.06
     assert areas == pytest.approx({0: there - wedge, 2: wedge, NOTHING: 1.0 - there}, abs=2e-5)
+
+
+def test_where_the_mass_matrix_is_singular():
+    """Behind a b = 1 the inertia is negative; Hopf where b = 0.6 - x, in front of it only."""
+    x, y, a, b = sp.symbols("x y a b")
+    equations = {"x": y, "y": -x - (b - 0.6) * y + a}
+    parameters = (Parameter("a", 0.5), Parameter("b", 0.8))
+    model = Model("inertia", equations, parameters, mass=sp.diag(1, 1 - a * b))
+    found = search(Plane(system_of(model), ("a", "b"), ((0.0, 2.0), (0.1, 2.1))), ChartSettings())
+    hopf, singular = sorted(found.boundaries, key=lambda boundary: boundary.kind)
+    assert (hopf.kind, singular.kind) == ("hopf", "singular")
+    assert found.unexplained == []
+    assert found.troubles == []
+    assert singular.values.prod(axis=1) == pytest.approx(1.0, abs=1e-12)
+    assert singular.complete
+    assert hopf.values[:, 1] == pytest.approx(0.6, abs=1e-12)
+    # left of a = 1/2.1 all the height is in front of the line
+    share = (1.0 / 2.1 * 2.0 + np.log(2.0 * 2.1) - 0.1 * (2.0 - 1.0 / 2.1)) / 4.0
+    areas = held(found)
+    assert areas.keys() == {0, 2, BEYOND}
+    assert areas[BEYOND] == pytest.approx(1.0 - share, abs=1e-4)
+    below = 0.5 * (1.0 / 0.6) + np.log(2.0 * 0.6) - 0.1 * (2.0 - 1.0 / 0.6)
+    assert areas[2] == pytest.approx(below / 4.0, abs=1e-4)
+
+
+def test_a_mass_matrix_that_states_make_singular():
+    """x rests at a: the mass 1 - x b is zero on the same curve, and the forces are not."""
+    x, y, z, a, b, s = sp.symbols("x y z a b s")
+    equations = {"x": y, "y": a - x - y - z}
+    model = Model(
+        "inertia",
+        equations,
+        (Parameter("a", 0.5), Parameter("b", 0.5)),
+        elements=(FractionalElement("z", y, s ** sp.Rational(1, 2)),),
+        mass=sp.diag(1, 1 - x * b),
+    )
+    found = search(Plane(system_of(model), ("a", "b"), ((0.0, 2.0), (0.0, 2.0))), ChartSettings())
+    (singular,) = found.boundaries
+    assert singular.values.prod(axis=1) == pytest.approx(1.0, abs=1e-12)
+    assert singular.states[:, 0] == pytest.approx(singular.values[:, 0], abs=1e-12)
+    areas = held(found)
+    assert areas[BEYOND] == pytest.approx((3.0 - np.log(4.0)) / 4.0, abs=1e-4)
+    assert areas.keys() == {0, BEYOND}
 
 
 def test_folds_between_several_equilibria(searched):

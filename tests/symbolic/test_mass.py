@@ -104,6 +104,39 @@ def test_pivoting(case):
         np.testing.assert_allclose(compiled.core(x, np.array([0.7])), exact, rtol=1e-12)
 
 
+@pytest.mark.parametrize("case", matrices())
+def test_forces_and_determinant_before_the_mass_is_inverted(case):
+    symbols = sp.symbols("x y z a")
+    mass = matrices()[case]
+    x, y, z, a = symbols
+    right = [sp.sin(x), y**2, z - a * x]
+    model = Model("pivots", dict(zip("xyz", right, strict=True)), (Parameter("a", 0.7),), mass=mass)
+    compiled = compile_model(model)
+    assert compiled.has_inertia
+    wanted = sp.Matrix([*right, mass.det()])
+    exact = sp.lambdify(symbols, [wanted, wanted.jacobian(symbols)], "numpy")
+    factors = []
+    for at in np.random.default_rng(1).uniform(-0.5, 0.5, (6, 4)):
+        value, slopes = exact(*at)
+        told = compiled.forces(at[:3], at[3:])
+        assert compiled.inertia(at[:3], at[3:]) == told[-1]
+        np.testing.assert_allclose(told[:-1], value[:-1, 0], rtol=1e-14)
+        factors.append(told[-1] / value[-1, 0])
+        for direction in np.eye(4):
+            slope = compiled.forces_d(at[:3], at[3:], direction[:3], direction[3:])
+            slope[-1] /= factors[-1]
+            size = np.abs(slopes).max()
+            np.testing.assert_allclose(slope, slopes @ direction, rtol=1e-9, atol=1e-11 * size)
+    assert factors == pytest.approx([factors[0]] * 6, rel=1e-9)
+
+
+def test_a_mass_that_is_never_singular_has_no_determinant_to_watch():
+    x, y = sp.symbols("x y")
+    equations = {"x": x + y, "y": x - y}
+    assert not compile_model(Model("plain", equations)).has_inertia
+    assert not compile_model(Model("numbers", equations, mass=sp.diag(2, 3))).has_inertia
+
+
 def test_mass_and_element_together():
     """m w' = -k Z(s) x: the element's output is not multiplied by the mass."""
     from racs_bif.symbolic.model import FractionalElement
