@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from racs_bif.plots.style import BLACK
 from racs_bif.results.chart import describe_count
 
 if TYPE_CHECKING:
@@ -33,7 +35,9 @@ def annotate(chart: Chart, ax: Axes) -> None:
         if written is not None:
             taken.append(written.get_window_extent())
         elif region.area > 2e-4:
+            # beside the region then, and a dot in it
             small.append(Label(text, float(region.place[0]), float(region.place[1])))
+            ax.plot(*region.place, ".", color=BLACK, markersize=4.0, zorder=5.0, label="_region")
     for boundary in chart.boundaries:
         for point in boundary.points:
             if point.label == "GH":
@@ -46,18 +50,22 @@ def annotate(chart: Chart, ax: Axes) -> None:
 
 
 def _inside(chart: Chart, region: ChartRegion, text: str, ax: Axes) -> Text | None:
-    """Write a text well inside a region; None, and nothing written, where it does not fit."""
+    """Write a text well inside a region, upright where it does not fit otherwise.
+
+    None, and nothing written, where it does not fit at all.
+    """
     filled = chart.map is not None and chart.map.shown is not None
     box = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0}
     boxed = filled or region.unstable < 0
     (x, y), height = region.place, chart.spans[1][1] - chart.spans[1][0]
-    for up in _HEIGHTS:
+    for turned, up in itertools.product((0.0, 90.0), _HEIGHTS):
         written = ax.text(
             float(x),
             float(y) + up * height,
             text,
             ha="center",
             va="center",
+            rotation=turned,
             fontsize="small",
             zorder=6,
             bbox=box if boxed else None,
