@@ -8,6 +8,7 @@ from racs_bif.continuation.building import Builder
 from racs_bif.continuation.settings import StepSettings
 from racs_bif.continuation.start import begin
 from racs_bif.continuation.stepping import Stepper
+from racs_bif.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -56,10 +57,13 @@ def steps(
     Raises
     ------
     UsageError
-        If the span or the start cannot be used.
+        If the span, the start or the direction cannot be used.
     ConvergenceError
         If there is no solution at the start.
     """
+    if direction not in {1, -1}:
+        msg = f"the direction must be 1 or -1, not {direction!r}"
+        raise UsageError(msg)
     settings = settings or StepSettings()
     corrected, unit, iterations, scaling = begin(problem, z, span, settings, tangent)
     builder = Builder(problem, (), 0)

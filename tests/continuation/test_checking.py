@@ -111,6 +111,8 @@ def pairs(*upper):
         (pairs(0.1 + 0.2j, -0.1 + 9j), False),
         (pairs(0.1 + 0.2j, 0.1 + 14j), False),  # it may be another one
         (pairs(0.1 + 0.2j, 0.1 + 9j, -0.1 + 9.1j), False),  # it may be the other one
+        (pairs(0.1 + 0.2j, 0.1 + 9.4j, 0.8 + 9.4j), False),  # the other one is too near
+        (pairs(0.1 + 0.2j, 0.1 + 9.4j, -0.8 + 9.4j), True),  # it is not, on the other side
         (pairs(0.1 + 0.2j), False),
         (np.append(pairs(0.1 + 0.2j, 0.1 + 9j), -np.inf), False),  # too poor to follow any
     ],

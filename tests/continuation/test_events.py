@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from racs_bif.continuation import StepSettings, Stopped, trace
+from racs_bif.continuation.locating import apart
 
 TRUE = 0.31
 
@@ -54,6 +55,54 @@ def test_crossings_that_no_detector_sees_are_told(kinds):
     assert branch.special == []
     assert "from 0 to 2" in branch.message
     assert "0.3" in branch.message
+
+
+def test_crossings_that_no_detector_sees_are_told_where_they_are(kinds):
+    branch = trace(kinds.Pairs(lambda p: p - TRUE), [0, 0], (-1, 1), [kinds.Fold()])
+    ((low, high),) = branch.unexplained
+    assert low < TRUE < high < low + 1e-5
+
+
+def test_steps_are_shorter_after_crossings_that_no_detector_sees(kinds):
+    def walked(problem, detectors):
+        settings = StepSettings(initial=1e-3)
+        branch = trace(problem, [0, 1.2], (0, 3), detectors, settings, direction=1)
+        return np.array([point.parameter for point in branch.points])
+
+    free = walked(kinds.Pairs(lambda p: -1.0), [])
+    middle = 0.5 * (free[2] + free[3])
+    divided = walked(kinds.Pairs(lambda p: p - middle), [kinds.Fold()])
+    # It is known one step later that a segment had to be divided.
+    last, following = divided[divided > free[3] + 1e-12][:2]
+    assert last == pytest.approx(free[4], rel=1e-12)
+    assert following - last == pytest.approx(0.5 * (free[5] - free[4]), rel=0.05)
+
+
+def test_crossings_at_the_start_itself_are_not_told(kinds):
+    start = TRUE - 1e-8
+    problem = kinds.Pairs(lambda p: p - TRUE)
+    branch = trace(problem, [np.sin(start), start], (-1, 1), [kinds.Fold()], direction=1)
+    assert branch.message == ""
+    assert branch.unexplained == []
+
+
+def test_crossings_where_the_equations_fail_are_told(kinds):
+    class Broken(kinds.Pairs):
+        middle = width = math.nan
+
+        def residual(self, z):
+            if abs(z[1] - self.middle) < 0.2 * self.width:
+                msg = "outside its domain"
+                raise FloatingPointError(msg)
+            return super().residual(z)
+
+    problem = Broken(lambda p: p - problem.middle)
+    accepted = [point.z[1] for point in trace(problem, [0, 0], (-1, 1)).points]
+    low, high = accepted[-6:-4]
+    problem.middle, problem.width = 0.5 * (low + high), high - low
+    branch = trace(problem, [0, 0], (-1, 1), [kinds.Fold()])
+    assert branch.unexplained == [(low, high)]
+    assert "from 0 to 2" in branch.message
 
 
 def test_opposite_crossings_at_one_place_are_told(kinds):
@@ -186,6 +235,17 @@ def test_equations_that_fail_where_a_function_dips_make_no_event(kinds, line):
     assert branch.special == []
     assert [point.z[1] for point in branch.points] == accepted
     assert len(trace(line, [0, 0], (0, 1), [dip]).special) == 2
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_the_unit_of_a_function_that_dips_does_not_matter(kinds, line, unit):
+    detector = kinds.Given(lambda z: unit * ((z[1] - 0.4321) ** 2 - 1e-8))
+    branch = trace(line, [0, 0], (0, 1), [detector])
+    np.testing.assert_allclose(found(branch), [0.432, 0.4322], atol=1e-10)
+
+
+def test_places_that_nearly_coincide_are_one():
+    assert apart([0.7, 0.1, 0.4 + 1e-10, 0.4]) == [0.1, 0.4, 0.7]
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])

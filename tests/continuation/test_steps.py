@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 
 from racs_bif.continuation import StepSettings, Stopped, steps
+from racs_bif.continuation.building import Builder
 from racs_bif.continuation.scaling import Scaling
+from racs_bif.continuation.start import begin
+from racs_bif.continuation.stepping import Stepper
 from racs_bif.errors import UsageError
+from racs_bif.numerics.newton import Corrected
 
 
 def test_steps_yields_points_and_returns_why_it_ended(line):
@@ -103,6 +107,68 @@ def test_only_the_parameter_bends_a_branch():
     assert Scaling(4.0, np.ones(3)).bend(before, after) == pytest.approx(small)
 
 
+@pytest.mark.parametrize(
+    ("at", "tangent", "outgrown"),
+    [
+        ([1.0, 2e5], [0.0, 1.0, 0.0], True),
+        ([1.0, 9e4], [0.0, 1.0, 0.0], False),  # not far enough
+        ([1.0, 2e5], [0.0, -1.0, 0.0], False),  # on its way back
+        ([1.0, -2e5], [0.0, -1.0, 4e-10], True),  # e-fold within 8e-5 of the parameter
+        ([1.0, 2e5], [0.0, 1.0, 6e-10], False),  # within 1.2e-4, more than a millionth of 100
+        ([1.0, 2e5], [0.0, 1.0, 1.0], False),
+    ],
+)
+def test_when_a_branch_counts_as_running_to_infinity(at, tangent, outgrown):
+    scaling = Scaling(100.0, np.ones(2))
+    assert scaling.outgrown(np.array([*at, 50.0]), np.array(tangent)) is outgrown
+
+
+def test_a_start_is_corrected_across_a_tangent_along_one_axis(circle):
+    start = next(steps(circle, [0.1, 0.9], (-2, 2), tangent=[1.0, 0.0]))
+    assert start.z == pytest.approx([0.1, math.sqrt(0.99)], rel=1e-12)
+
+
+def test_the_first_tangent_is_of_length_one_though_the_scales_grew(circle):
+    tangent = np.array([-0.6, 0.6])
+    z, unit, _, scaling = begin(circle, np.array([0.4, 0.6]), (-2, 2), StepSettings(), tangent)
+    assert z[0] > 0.4
+    assert scaling.norm(unit) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_a_tangent_that_is_too_far_off_is_replaced_by_one_of_length_one(line):
+    settings = StepSettings()
+    first, second = itertools.islice(steps(line, [0.5, 0.5], (0, 1), tangent=[1.0, 0.1]), 2)
+    assert second.arclength - first.arclength == pytest.approx(settings.initial, rel=1e-9)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize(("x", "end"), [((0.5, 1.0), 0.5), ((1.0, 0.5), 0.5), ((0.9, 0.6), 0.4)])
+def test_where_a_step_left_its_span_is_foreseen_by_the_cubic(kinds, sense, x, end):
+    """Of the branch p = x**3; the equations are solved at the end of the span afterwards."""
+    cubic = kinds.Scalar(lambda x, p: p - x**3, lambda x, p: -3.0 * x * x, lambda x, p: 1.0)
+    scaling, builder = Scaling(1.0, np.ones(1)), Builder(cubic, (), 0)
+    way = math.copysign(1.0, x[1] - x[0])
+
+    def at(x):
+        tangent = way * np.array([1.0, 3.0 * x * x])
+        return np.array([x, x**3]), tangent / scaling.norm(tangent)
+
+    (a, along_a), (b, along_b) = map(at, x)
+    span = (0.0, end) if way > 0.0 else (end, 1.0)
+    start = builder.point(a, sense * along_a, 0.0, 0)
+    stepper = Stepper(builder, scaling, start, span, StepSettings(), sense)
+    share, prediction = stepper._overshot(Corrected(b, along_b, 3, 0.0), (-1, *span))
+    assert 0.0 < share < 1.0
+    assert prediction == pytest.approx([end ** (1 / 3), end], abs=0.02)
+    assert prediction[1] == pytest.approx(end, abs=1e-7)
+
+
 def test_which_eigenvalues_are_unstable_is_asked_one_by_one(line):
     spectrum = np.array([1.0, -2.0, 3.0 + 1j, 3.0 - 1j, 0.0])
     assert line.sides(spectrum).tolist() == [True, False, True, True, False]
+
+
+@pytest.mark.parametrize("direction", [0, 2, None])
+def test_other_directions_than_forwards_and_backwards_are_refused(line, direction):
+    with pytest.raises(UsageError, match="must be 1 or -1"):
+        list(steps(line, [0, 0], (0, 1), direction=direction))

@@ -62,6 +62,16 @@ def test_a_last_point_that_becomes_special_is_told_again(line, caplog):
     assert [row[-2] for row in rows(caplog)[1:]] == ["1.00E+00", "1.00E-01", "1.10E+00"]
 
 
+def test_the_table_shows_all_of_few_unknowns_and_their_norm(line, caplog):
+    z = np.array([3.0, 4.0, 0.5])
+    point = Point(z, np.ones(3), np.zeros(0, complex), None, 0, {}, 0.0, 1)
+    with caplog.at_level(logging.INFO, logger="racs_bif.continuation"):
+        Table(line, 7, 1).tell([(point, None)])
+    assert caplog.messages[1].split()[4:8] == ["p", "norm", "U(1)", "U(2)"]
+    ((_, _, *shown, _, _),) = rows(caplog)
+    assert [float(number) for number in shown] == [0.5, 5.0, 3.0, 4.0]
+
+
 def test_names_that_are_too_long_for_their_column_are_cut(kinds, caplog):
     problem = kinds.Scalar(lambda x, p: x - p, lambda x, p: 1.0, lambda x, p: -1.0)
     problem.parameter = "a_parameter_of_a_long_name"

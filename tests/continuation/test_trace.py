@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from racs_bif.continuation import Problem, StepSettings, Stopped, trace
+from racs_bif.continuation.start import begin
 from racs_bif.errors import ConvergenceError, UsageError
 
 LOCATED = 3e-11
@@ -298,6 +299,52 @@ def test_a_branch_that_leaves_zero_takes_natural_steps_at_once(kinds, unit_x):
     assert branch.message == ""
 
 
+class Leaving(Problem):
+    """x leaves zero at p = 0 as a pitchfork, in its unit; y is 5 and leans on it a little."""
+
+    name = "leaving"
+    parameter = "p"
+
+    def __init__(self, unit):
+        self.unit = unit
+
+    def residual(self, z):
+        x = z[0] / self.unit
+        return np.array([z[2] * x - x**3, z[1] - 5.0 - 1e-3 * x])
+
+    def jacobian(self, z):
+        x = z[0] / self.unit
+        lean = -1e-3 / self.unit
+        return np.array([[(z[2] - 3.0 * x * x) / self.unit, 0.0, x], [lean, 1.0, 0.0]])
+
+
+@pytest.mark.parametrize("unit", [1e-4, 1.0, 1e6])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_one_of_two_unknowns_leaves_zero_in_natural_steps(unit, sense):
+    tangent = [sense * unit, sense * 1e-3, 0.0]
+    branch = trace(Leaving(unit), [0.0, 5.0, 0.0], (-1, 1), tangent=tangent)
+    x = np.sort(np.abs(column(branch, 0))) / unit
+    assert x[0] == 0.0
+    assert x[1] > 1e-4
+    assert x[-1] == pytest.approx(1.0, rel=1e-9)
+
+
+def test_an_unknown_that_is_not_zero_keeps_its_magnitude_where_another_leaves_zero():
+    start, tangent = np.array([0.0, 5.0, 0.0]), np.array([1.0, 1e-3, 0.0])
+    scaling = begin(Leaving(1.0), start, (-1, 1), StepSettings(), tangent)[3]
+    assert scaling.norm(np.array([0.0, 5.0, 0.0])) == pytest.approx(math.sqrt(0.5), rel=1e-3)
+
+
+def test_a_branch_that_leaves_zero_to_one_side_only_takes_natural_steps(kinds):
+    def f(x, p):
+        return p * x - x**3 if x >= 0.0 else math.nan
+
+    half = kinds.Scalar(f, lambda x, p: p - 3.0 * x * x, lambda x, p: x)
+    branch = trace(half, [0, 0], (-1, 1), tangent=[1, 0], direction=1)
+    assert branch.points[1].z[0] > 1e-4
+    np.testing.assert_allclose(branch.points[-1].z, [1, 1], atol=1e-12)
+
+
 def test_given_tangent_that_leads_nowhere_is_an_error(kinds):
     cross = kinds.Scalar(
         lambda x, p: x * x + p * p + 1e-3, lambda x, p: 2 * x, lambda x, p: 2 * p, spectral=False
@@ -386,6 +433,72 @@ def test_target_just_short_of_a_fold_is_met_in_a_walk_of_one_step(kinds):
     np.testing.assert_allclose([s.z[0] for s in branch.special], [4.999, 5.001], atol=LOCATED)
 
 
+class Turning(Problem):
+    """x turns the parameter back at 5, y goes on with it or against it."""
+
+    name = "turning"
+    parameter = "p"
+
+    def __init__(self, sense):
+        self.sense = sense
+
+    def residual(self, z):
+        return np.array([z[2] - (z[0] - 5.0) ** 2, z[1] - 9.0 - self.sense * z[0]])
+
+    def jacobian(self, z):
+        return np.array([[-2.0 * (z[0] - 5.0), 0.0, 1.0], [-self.sense, 1.0, 0.0]])
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_target_just_short_of_a_fold_of_two_unknowns_is_met_in_a_walk_of_one_step(sense):
+    problem, settings = Turning(sense), StepSettings(initial=4e-3, points=1)
+    start = [4.99, 9.0 + sense * 4.99, 1e-4]
+    branch = trace(problem, start, (-1, 1), (), settings, targets=[1e-6], direction=-1)
+    assert branch.points[-1].z[0] > 5.005
+    np.testing.assert_allclose([s.z[0] for s in branch.special], [4.999, 5.001], atol=LOCATED)
+
+
+def test_equations_that_fail_where_the_parameter_turns_back_end_nothing(kinds):
+    def f(x, p):
+        if 4.995 < x < 5.007:
+            msg = "outside its domain"
+            raise FloatingPointError(msg)
+        return p - (x - 5.0) ** 2
+
+    problem = kinds.Scalar(f, lambda x, p: -2.0 * (x - 5.0), lambda x, p: 1.0)
+    settings = StepSettings(initial=4e-3, points=1)
+    branch = trace(problem, [4.99, 1e-4], (-1, 1), (), settings, targets=[1e-6], direction=-1)
+    assert branch.special == []
+    assert [point.z[0] > 5.0 for point in branch.points] == [False, True]
+
+
+def test_a_turn_away_from_all_targets_adds_no_point(fold):
+    plain = trace(fold, [1, 1], (-1, 2))
+    wanted = trace(fold, [1, 1], (-1, 2), targets=[1.7])
+    assert names(wanted) == ["UZ1", "UZ2"]
+    ordinary = [point.z for point in wanted.points if not point.label]
+    np.testing.assert_array_equal(ordinary, [point.z for point in plain.points])
+
+
+def test_target_where_the_parameter_cannot_be_held_is_left_as_it_was_located(kinds):
+    cusp = kinds.Scalar(lambda x, p: p - x**3, lambda x, p: -3 * x * x, lambda x, p: 1.0)
+    branch = trace(cusp, [-1, -1], (-1, 1.1), targets=[0.0])
+    assert names(branch) == ["UZ1"]
+    np.testing.assert_allclose(branch["UZ1"].z, 0.0, atol=LOCATED)
+    assert branch.message == ""
+
+
+def test_target_of_an_unknown_is_met_exactly(kinds):
+    class Placed(kinds.Scalar):
+        def place(self, measure):
+            return -2 if measure == "x" else None
+
+    problem = Placed(lambda x, p: x - math.sin(p), lambda x, p: 1.0, lambda x, p: -math.cos(p))
+    branch = trace(problem, [0, 0], (-1, 1), targets={"x": [0.25]})
+    assert branch["UZ1"].z[0] == 0.25
+    assert branch["UZ1"].z[1] == pytest.approx(math.asin(0.25), rel=1e-14)
+
+
 def test_targets_at_the_ends_and_the_start_count_once(line):
     branch = trace(line, [0.5, 0.5], (0, 1), targets=[0, 0.5, 1])
     assert [special.z[1] for special in branch.special] == [0.0, 0.5, 1.0]
@@ -435,6 +548,12 @@ def test_start_at_the_edge_sent_outwards_has_one_point(line):
 def test_unusable_start_or_span_is_named(line, z, span, message):
     with pytest.raises(UsageError, match=message):
         trace(line, z, span)
+
+
+def test_a_start_outside_the_span_is_told_by_its_parameter():
+    problem = Two(0.3, lambda y, p: y - 7.0, lambda y, p: 1.0, lambda y, p: 0.0)
+    with pytest.raises(UsageError, match="two starts at p = 2, outside the span 0 to 1"):
+        trace(problem, [0.3, 7.0, 2.0], (0, 1))
 
 
 def test_unusable_direction_and_tangent_are_named(line):
