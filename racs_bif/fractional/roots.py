@@ -31,7 +31,8 @@ class Roots:
     roots : array (k,)
         The roots, rightmost first, a complex pair with its positive imaginary part first.
     errors : array (k,)
-        Moduli of the last Newton corrections.
+        Moduli of the last Newton corrections; for a multiple root the error of the mean, or how far
+        its roots lie apart where that is felt.
     multiplicities : array (k,) of int
         Multiplicities.
     above : float

@@ -28,6 +28,10 @@ _CONVERGED = 1e-9
 _CLOSE = 1e-4
 _CUTS = (0.5137, 0.4561, 0.5823, 0.3947, 0.6411)
 _CIRCLES = (1.0, 0.1, 10.0, 0.01)
+_CLEAR = 0.4
+"""Circles around groups of estimates reach so far towards others."""
+_FELT = 1e2
+"""A sum of powers that is so many times its error is none of rounding."""
 _EPSILON = float(np.finfo(float).eps)
 
 
@@ -40,7 +44,8 @@ class Zeros:
     t : array (k,)
         The zeros.
     errors : array (k,)
-        Last Newton corrections; for a multiple zero what is left of the error of the mean.
+        Last Newton corrections; for a multiple zero what is left of the error of the mean, or how
+        far the zeros lie apart where that is felt.
     multiplicities : array (k,) of int
         Multiplicities.
     """
@@ -178,7 +183,12 @@ def _with_multiple(
         else:
             groups.append(np.array([x]))
     for group in groups:
-        part = _group(ch, group, simple)
+        others = np.concatenate([simple.t, *(other for other in groups if other is not group)])
+        away = np.abs(others - group.mean())
+        clear = _CLEAR * away[away > np.abs(group - group.mean()).max() + _CLOSE].min(
+            initial=np.inf
+        )
+        part = _group(ch, group, simple, clear)
         if part is None:
             return None
         parts.append(part)
@@ -188,11 +198,11 @@ def _with_multiple(
     return zeros
 
 
-def _group(ch: Characteristic, group: Complex, simple: Zeros) -> Zeros | None:
-    """Return the zeros near a group of estimates."""
+def _group(ch: Characteristic, group: Complex, simple: Zeros, clear: float) -> Zeros | None:
+    """Return the zeros near a group of estimates, no others being nearer than `clear`."""
     centre = complex(group.mean())
     for factor in _CIRCLES:
-        radius = factor * _CLOSE * 3.0
+        radius = min(factor * _CLOSE * 3.0, clear)
         corner = radius * (1.0 + 1.0j)
         try:
             number, _ = count_rectangle(ch, centre - corner, centre + corner)
@@ -203,18 +213,30 @@ def _group(ch: Characteristic, group: Complex, simple: Zeros) -> Zeros | None:
             return Zeros(simple.t[inside], simple.errors[inside], simple.multiplicities[inside])
         if number == 0:
             return Zeros(np.zeros(0, complex), np.zeros(0), np.zeros(0, dtype=int))
-        coarse, fine = (_mean(ch, centre, 1.5 * radius, number, n) for n in (32, 64))
+        (coarse, rough), (fine, sums) = (
+            _power_sums(ch, centre, 1.5 * radius, number, n) for n in (32, 64)
+        )
         if np.abs(group - fine).max() < radius:
-            error = max(abs(fine - coarse), _EPSILON)
+            felt = np.abs(sums) > _FELT * np.abs(sums - rough)
+            sizes = np.abs(sums) ** (1.0 / np.arange(2, number + 1))
+            error = max(abs(fine - coarse), _EPSILON, *sizes[felt])
             return Zeros(np.array([fine]), np.array([error]), np.array([number]))
     return None
 
 
-def _mean(ch: Characteristic, centre: complex, radius: float, number: int, nodes: int) -> complex:
-    """Return the mean of the zeros in a disc, which is well conditioned where they coincide."""
+def _power_sums(
+    ch: Characteristic, centre: complex, radius: float, number: int, nodes: int
+) -> tuple[complex, Complex]:
+    """Return the mean of the zeros in a disc, and sums of the powers 2... of what they are off it.
+
+    They are well conditioned where the zeros coincide; so much as one is off the mean, some sum has
+    a root of about that size (P. Turan's second main theorem).
+    """
     unit = np.exp(2j * np.pi * (np.arange(nodes) + 0.5) / nodes)
-    rate = ch.log_det(centre + radius * unit)[1]
-    return complex(centre + radius**2 * np.mean(unit**2 * rate) / number)
+    weight = unit * ch.log_det(centre + radius * unit)[1] * radius / nodes
+    mean = complex((weight @ (radius * unit)) / number)
+    powers = (radius * unit - mean) ** np.arange(2, number + 1)[:, None]
+    return centre + mean, np.asarray(powers @ weight)
 
 
 def _joined(parts: list[Zeros]) -> Zeros:

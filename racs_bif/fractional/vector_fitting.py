@@ -106,23 +106,24 @@ def _relocate(law: Law, rates: Array, s: Complex) -> Array:
     """Return the next rates (k,), ascending."""
     target = law(s)
     weight = 1.0 / np.abs(target)
-    whole = Relaxations.of(law, rates)(s)
+    size = float(np.exp(-np.log(weight).mean()))  # so that the law's unit does not matter
+    whole = size * Relaxations.of(law, rates)(s)
     sigma = Relaxations(rates, integrates=False, feedthrough=True)(s)
     matrix = stack(weight * np.concatenate([whole, -target * sigma]))
     # keeps sigma from vanishing without naming the gain that must not
     row = np.concatenate([np.zeros(len(whole)), sigma.real.mean(axis=1)])
-    matrix = np.vstack([_static_row(law, len(whole), rates), matrix, row])
+    matrix = np.vstack([_static_row(law, size * np.ones(len(whole)), rates), matrix, row])
     right = np.append(np.zeros(len(matrix) - 1), 1.0)
     gains = np.linalg.lstsq(matrix, right, rcond=None)[0][len(whole) :]
     zeros = np.linalg.eigvals(-np.diag(rates) - np.outer(rates, gains[:-1] / gains[-1]))
     return _made_real(np.asarray(zeros, dtype=np.complex128))
 
 
-def _static_row(law: Law, count: int, rates: Array) -> Array:
+def _static_row(law: Law, whole: Array, rates: Array) -> Array:
     """Return the static gain as a heavy row (1, n), no row for a law that integrates."""
     if law.integrates:
-        return np.zeros((0, count + len(rates) + 1))
-    row = np.append(np.ones(count), -law.static_gain * np.ones(len(rates) + 1))
+        return np.zeros((0, len(whole) + len(rates) + 1))
+    row = np.append(whole, -law.static_gain * np.ones(len(rates) + 1))
     return _HEAVY * row[None, :] / max(abs(law.static_gain), abs(complex(law(1j * rates[0]))))
 
 

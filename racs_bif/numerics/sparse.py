@@ -45,10 +45,13 @@ def solver(matrix: Matrix) -> Callable[[Numbers], Numbers]:
     Raises
     ------
     numpy.linalg.LinAlgError
-        If the matrix is singular, maybe only when the solver is called.
+        If the matrix is not finite; or if it is singular, maybe only when the solver is called.
     """
     if not isinstance(matrix, np.ndarray):
         return Factors(matrix).solve
+    if not np.all(np.isfinite(matrix)):  # its solutions would be zero, as if all were solved
+        msg = "the matrix is not finite"
+        raise np.linalg.LinAlgError(msg)
     return lambda right: np.asarray(np.linalg.solve(matrix, right))
 
 

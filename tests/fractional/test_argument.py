@@ -107,3 +107,18 @@ def test_what_a_count_costs():
     assert mikhailov(ordinary(matrix)).evaluations < 150
     assert mikhailov(ordinary(matrix)).distance < 0.01
     assert count_right(ordinary(matrix)).discrepancy < 0.26
+
+
+def test_several_roots_on_the_line_at_once():
+    """Each is reported, and the line is moved by little against them, however small they are."""
+    for unit in (1.0, 1e-4):
+        matrix = np.diag([0.0, 0.0, 0.0, 0.0, -2.0])
+        matrix[:2, :2], matrix[2:4, 2:4] = [[0.0, 1.0], [-1.0, 0.0]], [[0.0, 3.0], [-3.0, 0.0]]
+        count = count_right(ordinary(unit * matrix))
+        assert count.unstable == 0
+        assert count.on_line == pytest.approx([1j * unit, 3j * unit])
+
+
+def test_a_contour_that_still_meets_a_root_is_moved_further(monkeypatch):
+    monkeypatch.setattr("racs_bif.fractional.argument._SHIFTS", (0.0, 1e-7))
+    assert count_right(oscillator(0.0)).on_line == pytest.approx([1j])

@@ -5,16 +5,29 @@ import sys
 
 import numpy as np
 import pytest
+import sympy as sp
 from flint import acb, arb, ctx
 
 from racs_bif.errors import ConvergenceError, UsageError
-from racs_bif.fractional.certificates import Place, beside, changes, exact_count, near, resolve
+from racs_bif.fractional.certificates import (
+    Place,
+    at_fold,
+    beside,
+    changes,
+    exact_count,
+    near,
+    resolve,
+)
+from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.fractional.enclosed import EnclosedModel
-from racs_bif.fractional.exact_fold import solve_fold
+from racs_bif.fractional.exact_fold import _magnitudes, solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.fractional.intervals import BALLS, Ball, BallFunctions, UnboundedError, finite
 from racs_bif.fractional.krawczyk import Box, NoneThereError, _above
 from racs_bif.fractional.proofs import _Fold, _Hopf, prove_fold, prove_hopf
+from racs_bif.fractional.system import System
+from racs_bif.symbolic.compiled import compile_model
+from racs_bif.symbolic.model import DerivedParameter, Model, Parameter
 
 U_H, OMEGA_H = 10.2, 9.5200832  # model.md, section 4
 
@@ -176,6 +189,15 @@ def test_slopes_where_gains_are_parameters(gained, differences, name):
     slopes_agree(_Hopf(gained.exact, path, X, value, 1.3), differences)
 
 
+@pytest.mark.parametrize("name", ["b", "q", "r"])
+def test_slopes_where_the_least_order_of_a_law_is_a_parameter(system_of, differences, name):
+    law = "(s**r + s**q)/(b*s**r + s**2)"
+    numbers = {"b": 3.0, "q": 0.6, "r": 0.4}
+    system = system_of({"x": "b - w"}, elements=[("w", "b*x**2", law)], parameters=numbers)
+    equations = _Hopf(system.exact, system.path(name), np.array([0.7, -0.4]), numbers[name], 1.3)
+    slopes_agree(equations, differences)
+
+
 def test_the_precision_is_put_back(vehicle, hopf):
     before = ctx.prec
     prove_hopf(vehicle.exact, vehicle.path("u"), hopf.X, hopf.value, hopf.omega)
@@ -268,7 +290,20 @@ def test_what_is_undecided_is_an_error():
     assert right >= 3.0
     assert right == 3.0
     assert wide != right
-    for undecided in (lambda: wide < 0.5, lambda: wide >= 0.5, lambda: wide == wide + 0.0):
+    assert right > wide
+    assert not right > 3.0
+    assert BALLS.both(wide < right, right > wide)
+    assert not BALLS.both(wide < right, wide > right)
+    assert BALLS.either(wide > right, wide < right)
+    assert not BALLS.either(wide > right, right < wide)
+    assert BALLS.negated(wide > right)
+    assert not BALLS.negated(wide < right)
+    for undecided in (
+        lambda: wide < 0.5,
+        lambda: wide >= 0.5,
+        lambda: wide > 0.5,
+        lambda: wide == wide + 0.0,
+    ):
         with pytest.raises(UnboundedError, match="in one part of the box only"):
             undecided()
     with pytest.raises(UnboundedError):
@@ -306,7 +341,7 @@ def test_a_point_is_solved_again_and_its_shift_told(vehicle, hopf):
     assert found.value == pytest.approx(hopf.value, rel=1e-12)
     assert found.shift == pytest.approx(1e-3, rel=1e-3)
     assert found.correction < 1e-10
-    with pytest.raises(ConvergenceError, match=r"is elsewhere, at u = 10\.2"):
+    with pytest.raises(ConvergenceError, match=r"is elsewhere, at u = 10\.2\d*, omega = 9\.52"):
         resolve(vehicle.exact, vehicle.path("u"), place, hopf.omega, tolerance=1e-4)
 
 
@@ -352,6 +387,81 @@ def test_beside_a_fold_of_two_states(system_of):
         assert place.value == pytest.approx(1.0 + (place.X[0] - 2.0) ** 2, abs=1e-10)
         assert place.X[1] == pytest.approx(place.X[0] + 3.0, abs=1e-10)
         assert (place.X[0] - 2.0) * (end[0] - 2.0) > 0.0
+
+
+@pytest.mark.parametrize(("a", "b"), [(1e3, 1.0), (1e6, 1e6), (1e-3, 1e-3)])
+def test_a_place_beside_a_fold_knows_no_units(system_of, a, b):
+    """The parabola in units a of the state and b of the parameter."""
+
+    def place(a, b, x):
+        numbers = {"mu": 2.0 * b, "a": a, "b": b}
+        system = system_of({"x": "mu/b-1-(x/a-2)**2"}, parameters=numbers, guess={"x": 3.0 * a})
+        fold, end = (Place(X=np.array([y * a]), value=m * b) for y, m in ((2.0, 1.0), (x, 2.0)))
+        found = beside(system.exact, system.path("mu"), fold, end)
+        return found.X[0] / a, found.value / b
+
+    for x in (3.0, 1.0):
+        assert place(a, b, x) == pytest.approx(place(1.0, 1.0, x), rel=1e-7)
+
+
+def test_a_state_that_is_zero_but_for_rounding_does_not_count_beside_a_fold(system_of):
+    equations = {"x": "mu-1-(x/1e4-2)**2", "y": "-y"}
+    system = system_of(equations, parameters={"mu": 2.0}, guess={"x": 3e4, "y": 0.0})
+    fold = Place(X=np.array([2e4, 1e-10]), value=1.0)
+    place = beside(system.exact, system.path("mu"), fold, Place(X=np.array([3e4, 0.0]), value=2.0))
+    assert 2e4 < place.X[0] < 3e4
+    assert place.value == pytest.approx(1.0 + (place.X[0] / 1e4 - 2.0) ** 2, abs=1e-10)
+
+
+def test_beside_a_fold_along_a_derived_parameter():
+    x, y, m = sp.symbols("x y m")
+    model = Model(
+        "derived",
+        {"x": m - 1 - (x - 2) ** 2, "y": x + 300 - y},
+        (Parameter("m", 4.0, valid=(0.0, math.inf)),),
+        derived=(DerivedParameter("k", sp.sqrt(m), sets="m", valid=(0.0, math.inf)),),
+        guess={"x": 3.0, "y": 303.0},
+    )
+    system = System(compile_model(model), np.array([4.0]), Diffusive(band=(0.1, 100.0)))
+    fold, end = Place(X=np.array([2.0, 302.0]), value=1.0), Place(X=np.array([3.0, 303.0]), value=2)
+    place = beside(system.exact, system.path("k"), fold, end)
+    assert place.value**2 == pytest.approx(1.0 + (place.X[0] - 2.0) ** 2, abs=1e-10)
+    assert 2.0 < place.X[0] < 3.0
+
+
+def test_how_far_an_equilibrium_beside_a_fold_may_be_off(system_of):
+    """By what a realisation is off by, or by the chord; the states are those of mu = 1 + x^2."""
+    equations = {"x": "mu-1-x**2", "y": "x+5-y"}
+    system = system_of(equations, parameters={"mu": 2.0}, guess={"x": 1.0, "y": 6.0})
+
+    def found(start, end):
+        places = (Place(X=np.array(z[:2]), value=z[2]) for z in (start, end))
+        return beside(system.exact, system.path("mu"), *places)
+
+    with pytest.raises(ConvergenceError, match=r"its states differ by 7\.\de\+00"):
+        found((0.5, 12.6, 1.25), (0.6, 12.7, 1.36))
+    near_by = found((0.5, 5.6, 1.25), (0.54, 5.64, 1.2916))
+    assert near_by.X[1] == pytest.approx(near_by.X[0] + 5.0)
+    within_the_chord = found((0.5, 4.5, 1.25), (0.54, 6.5, 1.2916))
+    assert within_the_chord.X[1] == pytest.approx(within_the_chord.X[0] + 5.0)
+
+
+def test_a_singular_matrix_beside_a_fold_is_no_convergence(system_of):
+    """Nothing depends on y."""
+    equations = {"x": "mu-1-(x-2)**2", "y": "mu-x"}
+    system = system_of(equations, parameters={"mu": 2.0}, guess={"x": 3.0, "y": 1.0})
+    start, end = (Place(X=np.array([x, 1.0]), value=2.0) for x in (3.0, 3.1))
+    with pytest.raises(ConvergenceError, match="no exact equilibrium found beside mu = 2"):
+        beside(system.exact, system.path("mu"), start, end)
+
+
+def test_a_fold_is_told_to_rounding():
+    for fold in (2.0, -2.0, 1e6, 1e-6):
+        close, apart = fold * (1.0 + 1e-11), fold * (1.0 + 1e-9)
+        assert at_fold([5.0, fold], close, fold)
+        assert not at_fold([5.0, fold], apart)
+        assert not at_fold([5.0, fold], close, apart)
+    assert not at_fold([], 2.0)
 
 
 def test_a_count_where_no_equilibrium_is_refused(parabola):
@@ -400,3 +510,23 @@ def test_bounds_are_rounded_outwards():
         for k in range(1, 50):
             exact = (arb(k) / 51).upper()
             assert exact <= arb(_above(exact)) < exact * (1.0 + 1e-15)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e9])
+def test_the_unit_of_a_fold_does_not_matter(system_of, unit):
+    """x' = q/c - exp(x/c) + 3 x/c: a fold at x = c log 3."""
+    system = system_of(
+        {"x": "q/c - exp(x/c) + 3*x/c", "y": "x - y"}, parameters={"q": 1.0, "c": unit}
+    )
+    system = system.with_parameters({"c": unit})
+    guess = unit * np.array([1.2, 1.0])
+    fold = solve_fold(system.exact, system.path("q"), guess, -0.2 * unit)
+    assert fold.X / unit == pytest.approx([math.log(3.0)] * 2, rel=1e-13)
+    assert fold.value / unit == pytest.approx(3.0 - 3.0 * math.log(3.0), rel=1e-13)
+    assert fold.v == pytest.approx(fold.v[0] * np.ones(2), rel=1e-13)
+    assert fold.residual < 1e-12
+
+
+def test_corrections_of_a_fold_are_compared_with_what_they_correct():
+    size = _magnitudes(np.array([3.0, 1e-9, -5.0, 0.1, -0.7]), 2)
+    assert size == pytest.approx([3.0, 3e-3, 5.0, 0.7, 0.7])

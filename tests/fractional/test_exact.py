@@ -312,3 +312,42 @@ def test_beside_a_fold_what_is_zero_but_for_rounding_is_an_equilibrium(system_of
         q = np.array([np.e + beside])
         X = system.exact.equilibrium(np.array([1.0 + 1e-5]), q)
         assert X[0] == pytest.approx(1.0 + np.sqrt(2.0 * beside / np.e), abs=1e-8)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 100.0])
+def test_the_unit_of_a_state_beside_a_fold_does_not_matter(system_of, unit):
+    system = system_of({"x": "exp(x/c) - q*x/c"}, parameters={"q": 3.0, "c": unit})
+    for beside in np.geomspace(1e-12, 1e-9, 60):
+        p = np.array([np.e + beside, unit])
+        X = system.exact.equilibrium(np.array([unit * (1.0 + 1e-5)]), p)
+        assert X[0] / unit == pytest.approx(1.0 + np.sqrt(2.0 * beside / np.e), abs=1e-8)
+
+
+def test_a_step_that_no_halving_makes_good_is_a_small_one(system_of):
+    exact, p = system_of({"x": "x**2 - 1"}).exact, np.zeros(0)
+    X, step = np.array([3.0]), np.array([2.0])
+    after, value, size = exact._damped((X, p), step, lambda _: np.array([1e3]))
+    assert after == pytest.approx([2.9998], rel=1e-14)
+    assert value == pytest.approx(after**2 - 1.0, rel=1e-14)
+    assert size == 2.0
+
+
+def test_a_guess_where_a_model_with_an_element_is_undefined(system_of):
+    elements = [("w", "x", "s**q")]
+    system = system_of({"x": "log(x) - w"}, elements=elements, parameters={"q": 0.5})
+    with pytest.raises(ModelError, match=r"not finite at the guess x = 0; give another guess"):
+        system.equilibrium()
+
+
+def test_a_guess_where_the_slope_is_undefined(system_of):
+    with pytest.raises(ConvergenceError, match="no equilibrium found"):
+        system_of({"x": "sqrt(x**2 + y**2) + 1", "y": "y"}).equilibrium()
+
+
+@pytest.mark.parametrize(
+    "equations",
+    [{"x": "sqrt(x) + 1"}, {"x": "sqrt(x) - 1"}, {"x": "sqrt(x) + 1 - y", "y": "y - 3"}],
+)
+def test_a_guess_where_the_slope_is_infinite_is_no_equilibrium(system_of, equations):
+    with pytest.raises(ConvergenceError, match="no equilibrium found"):
+        system_of(equations).equilibrium()

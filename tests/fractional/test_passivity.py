@@ -189,3 +189,10 @@ def test_bands_between_many_edges():
     assert first == pytest.approx((1.0, 10.0), rel=1e-9)
     assert second[0] == pytest.approx(30.0, rel=1e-9)
     assert second[1] == math.inf
+
+
+def test_a_constant_in_disguise_is_passive():
+    """3 (1 + s**q)/(1 + s**q): what cancels in Im Z is zero, not negative."""
+    side = np.array([0.0, 0.4])
+    law = Law(PowerSum(np.array([3.0, 3.0]), side), PowerSum(np.ones(2), side))
+    assert passivity(law).active == passivity(law).negative_stiffness == ()

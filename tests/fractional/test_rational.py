@@ -101,3 +101,43 @@ def test_a_filter_without_memory_is_its_gain(law_of):
     law = law_of("1/(1 + s**q)", q=0.5)[0]
     made = rational(law, Filter(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 2.5))
     np.testing.assert_array_equal(made(np.array([0.1j, 1j, 10j])), 2.5)
+
+
+def test_the_unit_of_a_filter_does_not_matter(law_of):
+    law = law_of("1/(1 + s**q)", q=0.5)[0]
+    s = 1j * np.geomspace(1e-2, 1e2, 30)
+    for unit in (1e-9, 1e9):
+        done = Filter(np.diag([-1.0, -5.0]), np.ones(2), unit * np.array([0.3, 1.0]), 0.7 * unit)
+        np.testing.assert_allclose(rational(law, done)(s), done(s), rtol=1e-10)
+
+
+@pytest.mark.parametrize("gain", [1.0, 1e-9])
+def test_poles_that_polynomials_do_not_keep_apart_are_refused(law_of, gain):
+    law = law_of("1/(1 + s**q)", q=0.5)[0]
+    rates = np.geomspace(30.0, 100.0, 100)
+    with pytest.raises(UsageError, match="poles apart"):
+        rational(law, Filter(np.diag(-rates), rates, gain * np.ones(100), gain))
+
+
+def test_derivatives_where_inputs_move():
+    done = Filter(np.diag([-1.5, -3.0]), np.array([2.0, 0.5]), np.array([1.0, -4.0]), 0.0)
+    moved = Filter(np.zeros((2, 2)), np.array([0.3, 0.7]), np.array([-0.2, 0.9]), 0.0)
+    slope, s = _slope("law", done, moved), 1j * np.geomspace(0.1, 10.0, 7)
+    # c b moves by c' b + c b'
+    wanted = -0.1 / (s + 1.5) - 2.35 / (s + 3.0)
+    found = np.polyval(slope.numerator.coefficients[::-1], s) / ((s + 1.5) * (s + 3.0))
+    np.testing.assert_allclose(found, wanted, rtol=1e-12)
+
+
+def test_a_rational_system_is_itself_only(system_of):
+    system = system_of({"x": "-x"})
+    one, other = RationalSystem.of(system), RationalSystem.of(system)
+    assert len({one, other, one}) == 2
+
+
+def test_filters_that_cease_to_be_quotients_of_ours_are_refused():
+    straight = Filter(np.diag([-1.0, -2.0]), np.ones(2), np.ones(2), 0.0)
+    bent = Filter(np.array([[-1.0, 1.0], [0.0, -2.0]]), np.ones(2), np.ones(2), 0.0)
+    for pair in ((bent, straight), (straight, bent)):
+        with pytest.raises(UsageError, match="bent"):
+            _slope("bent", *pair)

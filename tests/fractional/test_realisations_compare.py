@@ -11,7 +11,7 @@ from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.fractional.charef import Charef
 from racs_bif.fractional.compare import compare, is_passive
 from racs_bif.fractional.diffusive import Diffusive
-from racs_bif.fractional.filter import Filter
+from racs_bif.fractional.filter import Filter, Realisation
 from racs_bif.fractional.fitted import Fitted
 from racs_bif.fractional.modified_oustaloup import ModifiedOustaloup
 from racs_bif.fractional.nonnegative import NonNegative
@@ -91,6 +91,8 @@ def test_refusal_is_a_row(rows):
     assert "use --realisation fitted or diffusive" in row.refused
     assert math.isnan(row.error)
     assert row.hopf_error is None
+    assert not row.real_poles
+    assert not row.passive
 
 
 @pytest.mark.parametrize(
@@ -200,3 +202,57 @@ def test_a_filter_that_is_all_but_a_gain_is_passive():
     almost = Filter(np.array([[-1.0]]), np.ones(1), np.array([-1e-15]), 1.0)
     assert is_passive(almost)
     assert not is_passive(Filter(np.array([[-1.0]]), np.ones(1), np.array([1e-3]), 1.0))
+
+
+@pytest.mark.parametrize("f", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("g", [1e-6, 1.0, 1e6])
+def test_whether_a_filter_is_passive_knows_no_units(f, g):
+    A, B = np.array([[-f]]), np.array([f])
+    assert is_passive(Filter(A, B, np.array([1e-15 * g]), g))
+    assert not is_passive(Filter(A, B, np.array([1e-3 * g]), g))
+
+
+def test_a_filter_that_gives_energy_at_high_frequencies_only_is_not_passive():
+    A, B = np.diag([-1.0, -1e6]), np.array([1.0, 1e6])
+    assert not is_passive(Filter(A, B, np.array([-1.0, 1e-3]), 2.0))
+    assert is_passive(Filter(A, B, np.array([-1.0, -1e-3]), 2.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given(Realisation):
+    """One filter for every law."""
+
+    filter: Filter
+    name = "given"
+
+    def realise(self, law):
+        return self.filter
+
+    def derivative(self, law, direction):
+        raise NotImplementedError
+
+
+@pytest.mark.parametrize(
+    ("law", "gain", "error"),
+    [("k/(1+s**q)", 49.0, 0.02), ("k/(1000+s**q)", 0.051, 0.02), ("k*s**q/(1+s)", 0.02, 0.02)],
+)
+def test_the_static_error_is_relative_to_the_static_gain(system_of, law, gain, error):
+    """Absolute where there is none."""
+    system = system_of(
+        {"x": "-x - w"}, elements=[("w", "x", law)], parameters={"k": 50.0, "q": 0.6}
+    )
+    constant = Filter(-np.eye(1), np.ones(1), np.zeros(1), gain)
+    (row,) = compare(system, [Given(band=(0.1, 10.0), filter=constant)])
+    assert row.static_gain == gain
+    assert row.static_error == pytest.approx(error, rel=1e-9)
+
+
+@pytest.mark.parametrize("f", [1e-6, 1.0, 1e6])
+def test_poles_are_real_by_their_size(system_of, f):
+    system = system_of({"x": "-x - w"}, elements=[("w", "x", "1/(1+s**q)")], parameters={"q": 0.6})
+    for beside, real in ((1.0, False), (1e-11, True)):
+        A = f * np.array([[-1.0, beside], [-beside, -1.0]])
+        (row,) = compare(
+            system, [Given(band=(0.1, 10.0), filter=Filter(A, np.ones(2), np.ones(2), 1.0))]
+        )
+        assert row.real_poles == real

@@ -13,7 +13,7 @@ from racs_bif.fractional.matsuda import Matsuda
 from racs_bif.fractional.modified_oustaloup import ModifiedOustaloup
 from racs_bif.fractional.nonnegative import NonNegative
 from racs_bif.fractional.realisations import REALISATIONS, choose_realisation
-from racs_bif.fractional.vector_fitting import VectorFitting
+from racs_bif.fractional.vector_fitting import VectorFitting, _made_real, _relocate
 
 
 def law(numerator, denominator, name, *, feedthrough=True):
@@ -290,3 +290,65 @@ def test_matsuda_goes_through_its_points_to_rounding():
     power, points = settings.power(0.5), np.geomspace(1e-2, 1e3, 18)
     values = power.constant + (power.gains * power.rates / (points[:, None] + power.rates)).sum(1)
     np.testing.assert_allclose(values, points**0.5, rtol=5e-12)
+
+
+def test_aaa_has_samples_enough_in_a_narrow_band():
+    one = law([(1.0, 0.0), (2.0, 1.0)], [(1.0, 0.0), (1.0, 1.0)], "rational")
+    realised = Aaa(band=(1.0, 1.05), order=1).realise(one)
+    assert realised.A[0, 0] == pytest.approx(-1.0, rel=1e-8)
+
+
+def test_modified_oustaloup_in_a_very_wide_band():
+    """The poles of the correction: their sum is H'/(1 - a), their product L H a/(1 - a)."""
+    low, high, a = 1e-6, 1e6, 0.3
+    slow, fast = np.sort(ModifiedOustaloup(band=(low, high), sections=9).power(a).rates[:2])
+    assert slow + fast == pytest.approx(high / 0.9 / (1.0 - a), rel=1e-14)
+    assert slow * fast == pytest.approx(a / (1.0 - a), rel=1e-14)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_the_unit_of_a_law_does_not_matter(unit):
+    rational = law([(unit, 0.0), (2.0 * unit, 1.0)], [(1.0, 0.0), (1.0, 1.0)], "rational")
+    s = 1j * np.geomspace(1.0, 60.0, 30)
+    realised = NonNegative(band=NARROW).realise(rational)
+    np.testing.assert_allclose(realised(s), rational(s), rtol=0.05)
+    vehicle = law([(unit, 0.0), (unit, 0.7)], [(1.0, 0.0), (1.0, 0.3)], "vehicle")
+    with pytest.raises(ParameterError, match="wrong sign"):
+        NonNegative(band=NARROW).realise(vehicle)
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1e-3, 1e3, 1e12])
+def test_fitted_poles_do_not_depend_on_the_unit_of_the_law(unit):
+    scaled = law([(unit, 0.0), (unit, 0.7)], [(1.0, 0.0), (1.0, 0.3)], "vehicle")
+    settings = VectorFitting(band=NARROW, order=6)
+    found, wanted = settings.realise(scaled), settings.realise(LAWS["vehicle"])
+    np.testing.assert_allclose(found.A, wanted.A, rtol=1e-6)
+
+
+def test_poles_are_moved_until_they_stay():
+    one, settings = LAWS["vehicle"], VectorFitting(band=NARROW, order=5)
+    rates = np.sort(-np.diag(settings.realise(one).A))
+    s = 1j * np.geomspace(1.0, 60.0, 200)
+    np.testing.assert_allclose(_relocate(one, rates, s), rates, rtol=1e-7)
+
+
+def test_zeros_anywhere_become_rates_that_are_apart():
+    assert _made_real(np.array([-3.0, -1.0, -1.0])) == pytest.approx([1.0, 1.05, 3.0])
+    assert _made_real(np.array([2.0, -1.0])) == pytest.approx([1.0, 2.0])
+    angle = 0.1
+    pair = -2.0 * np.exp(1j * angle * np.array([1.0, -1.0]))
+    assert _made_real(pair) == pytest.approx(2.0 * np.exp([-angle, angle]))
+    assert _made_real(-pair) == pytest.approx([2.0, 2.1])
+
+
+def test_twelve_poles_are_fitted_to_a_few_parts_in_a_million():
+    for kind in ("vehicle", "springpot", "zener", "proper"):
+        assert VectorFitting(band=NARROW, order=12).error(LAWS[kind]) < 5e-6
+
+
+def test_nonnegative_names_where_the_spectrum_is_wrong():
+    """Im Z(-x) has the sign of x**0.4 sin 0.7 pi + x**0.7 sin 0.4 pi - sin 0.3 pi."""
+    with pytest.raises(ParameterError, match=r"at 1e-06 \.\. ") as caught:
+        NonNegative(band=NARROW).realise(LAWS["vehicle"])
+    x = float(str(caught.value).split(" .. ")[1].split()[0])
+    assert x**0.4 + np.sin(0.4 * np.pi) / np.sin(0.7 * np.pi) * x**0.7 == pytest.approx(1, rel=0.03)

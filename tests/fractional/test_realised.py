@@ -317,3 +317,17 @@ def test_outputs_tell_where_there_are_no_states(system_of, vehicle):
     x, v = (state(vehicle, seed)[0] for seed in (0, 1))
     assert not vehicle.field.stateless
     np.testing.assert_array_equal(vehicle.field.telling(x, vehicle.values, v, 4), v[:4])
+
+
+def test_forms_along_many_points_where_an_output_is_squared(system_of):
+    """The filter's output moves with the order of its law, and the slope with the output."""
+    system = system_of(
+        {"x": "b - w**2 - x*w"}, elements=[("w", "x", "1 + s**q")], parameters={"b": 3.0, "q": 0.6}
+    )
+    field, p = system.field, system.values
+    rng = np.random.default_rng(0)
+    x, v = rng.normal(size=(2, len(field.states), 5))
+    for dp in np.eye(2):
+        found = field.f_xp_along(x, p, v, dp)
+        wanted = [field.f_xp(x[:, k], p, v[:, k], dp) for k in range(5)]
+        np.testing.assert_allclose(found.T, wanted, rtol=1e-12, atol=1e-12)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from racs_bif.errors import ConvergenceError, ParameterError
+from racs_bif.fractional import search
 from racs_bif.fractional.argument import OnContourError, count_rectangle
 from racs_bif.fractional.beyn import roots_in_disc
 from racs_bif.fractional.characteristic import Characteristic
@@ -11,6 +12,7 @@ from racs_bif.fractional.laws import PowerSum
 from racs_bif.fractional.polish import polish
 from racs_bif.fractional.radii import annulus
 from racs_bif.fractional.roots import characteristic_roots, roots_right
+from racs_bif.fractional.search import zeros_in_rectangle
 from racs_bif.shelf.load import load_model
 
 
@@ -251,3 +253,121 @@ def test_the_order_of_a_root_at_zero_below_roots_of_very_different_sizes():
     found = roots_right(ordinary(np.diag([0.0, -1e-3, -1e6])), -1e9)
     assert found.zero_order == pytest.approx(1.0, abs=0.02)
     assert found.roots == pytest.approx([-1e-3, -1e6], rel=1e-9)
+
+
+def test_a_box_is_cut_across_its_longer_side():
+    low = 1.0 - 2.0j
+    wide, tall = (1.2 - 1.9j, 1.08 - 1.9j, 1.08 - 2.0j), (1.1 - 1.8j, 1.1 - 1.92j, 1.0 - 1.92j)
+    for high, top, bottom in (wide, tall):
+        first, second = search._Box(low, high).halves(0.4)
+        assert (first.low, second.high) == (low, high)
+        assert (first.high, second.low) == pytest.approx((top, bottom))
+
+
+def test_a_cut_through_a_root_is_made_elsewhere():
+    for fraction in search._CUTS[:2]:
+        found = zeros_in_rectangle(ordinary(np.array([[math.exp(fraction)]])), -0.1j, 1.0 + 0.1j)
+        assert found.t == pytest.approx([fraction], abs=1e-12)
+
+
+def test_a_circle_through_a_root_beside_a_double_one_is_made_smaller():
+    A = np.diag(np.exp([0.3, 0.3, 0.3 + 3.0 * search._CLOSE]))
+    A[0, 1] = 1.0
+    found = zeros_in_rectangle(ordinary(A), -0.2 - 0.5j, 0.9 + 0.6j)
+    assert found.t == pytest.approx([0.3, 0.3 + 3.0 * search._CLOSE], abs=1e-12)
+    assert found.multiplicities.tolist() == [2, 1]
+
+
+@pytest.mark.parametrize("poor", [lambda t: t[:1], None], ids=["a root is missed", "singular"])
+def test_a_box_whose_roots_cannot_be_estimated_is_cut(monkeypatch, poor):
+    calls = []
+
+    def estimates(*of):
+        calls.append(of)
+        if len(calls) > 1:
+            return roots_in_disc(*of)
+        if poor is None:
+            raise np.linalg.LinAlgError
+        return poor(roots_in_disc(*of))
+
+    monkeypatch.setattr(search, "roots_in_disc", estimates)
+    ch = ordinary(np.diag(np.exp([0.3, 0.6])))
+    found = zeros_in_rectangle(ch, -0.2 - 0.5j, 0.9 + 0.6j)
+    assert sorted(found.t.real) == pytest.approx([0.3, 0.6], abs=1e-12)
+    assert len(calls) > 1
+
+
+@pytest.mark.parametrize("omega", [1e-3, 1.0, 1e4])
+def test_roots_within_rounding_of_the_axis_are_on_it(omega):
+    """The count leaves them out, though they are found to be right of it."""
+    found = roots_right(ordinary(omega * np.array([[1e-10, 1.0], [-1.0, 1e-10]])), 0.0)
+    assert found.roots == pytest.approx(omega * np.array([1j, -1j]))
+    assert found.on_axis == pytest.approx([omega])
+    assert found.count_checked == found.unstable == 0
+
+
+@pytest.mark.parametrize("above", [0.0, -0.6, 0.4])
+def test_a_root_on_the_line_is_not_right_of_it(above):
+    matrix = np.array([[above, 1.0], [-1.0, above]])
+    assert len(roots_right(ordinary(matrix), above).roots) == 0
+
+
+def test_a_real_root_just_right_of_the_line_is_found():
+    assert roots_right(ordinary(np.array([[2.0]])), 1.98).roots == pytest.approx([2.0])
+
+
+def test_roots_on_the_branch_cut_are_told_from_the_right():
+    half = powers([1.0, 0.5, 1.0], [2.0, 0.5, 0.0])
+    rows, zero = [powers([1.0], [1.0])] * 3 + [half], powers([0.0], [0.0])
+    weights = [powers([1.0], [0.0])] * 3 + [zero]
+    found = roots_right(Characteristic(rows, weights, np.diag([-0.3, -0.1, -0.7, 0.0])))
+    assert found.on_cut == pytest.approx([-0.1, -0.3, -0.7])
+
+
+def test_the_ring_is_narrow_where_zero_is_a_root():
+    """Of det Delta = s (s**2 + 1): s det'/det leaves 1 by 1 % at |s| = 0.05."""
+    matrix = np.zeros((3, 3))
+    matrix[1:, 1:] = [[0.0, 1.0], [-1.0, 0.0]]
+    ring = annulus(ordinary(matrix))
+    assert math.log(0.05) - 0.25 < ring.inner <= math.log(0.05) + 1e-3
+    assert ring.zero_order == pytest.approx(1.0, abs=0.01)
+
+
+def test_nothing_but_a_root_at_zero():
+    ring = annulus(ordinary(np.zeros((1, 1))))
+    assert ring.zero_order == pytest.approx(1.0)
+    assert ring.inner == ring.outer - 1.0
+    assert len(roots_right(ordinary(np.zeros((1, 1)))).roots) == 0
+
+
+@pytest.mark.parametrize("apart", [1e-6, 1e-5, 1e-4, 2e-4, 1e-3])
+def test_a_double_root_with_a_simple_one_close_by(apart):
+    """They are one of multiplicity 3 whose error covers them, or they are told apart."""
+    exact = -np.exp([0.3, 0.3, 0.3 + apart])
+    A = np.diag(exact)
+    A[0, 1] = 1.0
+    found = roots_right(ordinary(A), -9.0)
+    assert found.multiplicities.sum() == 3
+    if apart > 1e-4:
+        assert found.multiplicities.tolist() == [2, 1]
+        assert found.roots == pytest.approx(exact[1:], rel=1e-10)
+        assert found.errors.max() < 1e-10
+    else:
+        assert found.roots == pytest.approx([exact.mean()], rel=1e-8)
+        away = np.abs(exact - exact.mean()).max()
+        assert away < found.errors[0] < 2.0 * away
+
+
+def test_three_roots_around_their_mean_are_felt_though_their_variance_vanishes():
+    size, turned = 1e-5, np.exp(2j * np.pi / 3.0 * np.arange(3))
+    zeros = np.exp(0.3 + 0.8j + size * turned)
+    A = np.zeros((6, 6))
+    for k, zero in enumerate(zeros):
+        rows = slice(2 * k, 2 * k + 2)
+        A[rows, rows] = [[zero.real, zero.imag], [-zero.imag, zero.real]]
+    found = roots_right(ordinary(A), -9.0)
+    if 3 in found.multiplicities:
+        assert size * np.exp(0.3) < found.errors[0] < 3.0 * size * np.exp(0.3)
+    else:
+        upper = found.roots[found.roots.imag > 0.0]
+        assert np.sort_complex(upper) == pytest.approx(np.sort_complex(zeros), rel=1e-8)
