@@ -25,7 +25,8 @@ _REACH = 1e-3
 _ROUNDING = 4e-16
 _APART = 1e-9
 _BEYOND = 1e-8
-
+AT = math.ulp(0.0)
+"""Stands for a value that is zero at a point put between two others."""
 
 Sample = tuple[float, float]
 """Abscissa and value."""
@@ -76,11 +77,13 @@ class Locator:
         place : int
             Which detector.
         before, after : float
-            Its values at the ends, of opposite signs.
+            Its values at the ends, of opposite signs; `AT` before where it is zero there.
         """
         detectors = self._builder.detectors
         if detectors[place].dismisses(segment.a, segment.b):
             return None
+        if abs(before) == AT:
+            return self.describe(place, segment.a, 0.0, _REACH)
         seen = {0.0: before, 1.0: after}
 
         def test(at: float, low: float, high: float) -> tuple[float, float]:

@@ -10,6 +10,9 @@ import numpy as np
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Array
 
+ZERO = 1e-7
+"""Unknowns below this are taken to be zero."""
+_FORESEEN = 10.0
 _GROWTH = 0.5
 _SLOPE = 1e-3
 _VAST = 1e5
@@ -77,11 +80,15 @@ class Scaling:
     def foresee(self, tangent: Array) -> bool:
         """Take in how far a straight branch would carry the unknowns over the span.
 
-        Only a small part of it counts: it is for unknowns that are zero at the start.
+        Only a small part of it counts: it is for unknowns that are zero at the start. And only so
+        far as the others grow tenfold: beside a fold the branch is nothing like straight.
         """
         if tangent[-1] == 0.0:
             return False
-        return self.suppose(_SLOPE * self._width * tangent / tangent[-1])
+        motion = _SLOPE * self._width * tangent / tangent[-1]
+        known = self._seen > ZERO
+        growth = np.abs(motion[:-1][known]) / self._seen[known]
+        return self.suppose(motion / max(float(growth.max(initial=0.0)) / _FORESEEN, 1.0))
 
     def bend(self, before: Array, after: Array) -> float:
         """Return how far the parameter went, in the small parts of its span of `foresee`."""

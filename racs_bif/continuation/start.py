@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.continuation.building import FAILURES
-from racs_bif.continuation.scaling import Scaling
+from racs_bif.continuation.scaling import ZERO, Scaling
 from racs_bif.errors import ConvergenceError, UsageError
 from racs_bif.numerics.newton import Corrected, damped_newton, newton
 
@@ -21,7 +21,6 @@ _EDGE = 1e-12
 _ASTRAY = 1e-6
 _ITERATIONS = 60
 _SEED = 12345
-_TINY = 1e-7
 _LEAP = 4.0
 _LEAPS = 40
 
@@ -211,7 +210,7 @@ def _leave_zero(
     rounding. Trial points ever farther out tell where the parameter begins to move.
     """
     leading = int(np.argmax(scaling.weights[:-1] * tangent[:-1] ** 2))
-    if problem.scales(z)[leading] > _TINY:
+    if problem.scales(z)[leading] > ZERO:
         return
     trial, reach = scaling.copy(), 1.0
     for _ in range(_LEAPS):

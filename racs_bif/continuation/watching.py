@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from racs_bif.continuation.building import FAILURES, Builder
 from racs_bif.continuation.counting import hides_others, unexplained
-from racs_bif.continuation.locating import Event, Locator, apart, at_zero, lowest_between
+from racs_bif.continuation.locating import AT, Event, Locator, apart, at_zero, lowest_between
 from racs_bif.continuation.points import Point, SpecialPoint
 from racs_bif.continuation.stopped import Stopped
 from racs_bif.continuation.targets import ParameterTarget
@@ -102,7 +102,7 @@ class Watch:
         self.nodes: list[Node] = [(start, None)]
         self.first = [0] * len(self._values)
         self.signs = [0] * len(self._values)
-        self.doubtful = [True] * len(self._values)
+        self.doubtful = [False] * len(self._values)
         self.divided = False
         self.unexplained: list[tuple[float, float]] = []
 
@@ -235,7 +235,7 @@ class Watch:
             nodes += self._resolve(a, middle, before, values)
             nodes.append((middle, None))
             a, before = middle, values
-        return nodes + self._resolve(a, b, before, after)
+        return _once(nodes + self._resolve(a, b, before, after))
 
     def _splits(
         self,
@@ -280,11 +280,10 @@ class Watch:
         return None
 
     def _between(self, point: Point, before: list[float]) -> list[float]:
-        """Return the values at a point put between two others, none of them exactly zero."""
-        tiny = math.ulp(0.0)
+        """Return the values at a point put between two others, zero with the sign before it."""
         values = self._builder.values(point)
         return [
-            value if value != 0.0 else math.copysign(tiny, old)
+            value if value != 0.0 else math.copysign(AT, old)
             for value, old in zip(values, before, strict=True)
         ]
 
@@ -299,7 +298,7 @@ class Watch:
         segment: Segment | None = None
         events: list[Event] = []
         for place in self._places:
-            if before[place] * after[place] < 0.0:
+            if before[place] < 0.0 < after[place] or after[place] < 0.0 < before[place]:
                 segment = segment or self._locator.segment(a, b)
                 event = self._locator.locate(segment, place, before[place], after[place])
                 if event is not None:
@@ -343,3 +342,9 @@ class Watch:
         """Whether eigenvalues are on the axis at the start: it counts for neither side."""
         detectors = self._builder.detectors
         return any(self.doubtful[place] and detectors[place].crossings for place in self._places)
+
+
+def _once(nodes: list[Node]) -> list[Node]:
+    """Leave out points at which there is an event besides."""
+    events = {point.arclength for point, event in nodes if event}
+    return [node for node in nodes if node[1] or node[0].arclength not in events]

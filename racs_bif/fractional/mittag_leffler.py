@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 _SERIES = 0.9  # |z| up to which the series is summed
 _DIGITS = 38.0  # -log of the error wanted
 _VERTICES = np.array([0.6, 0.85, 1.2, 1.6, 2.0])  # square roots of the parabolas' vertices
+_LARGE = 4.0  # log of the integrand on the parabola
+_FAR = 4.5  # log of |s| where the parabolas end
+_OVERFLOW = 700.0
 _HIGHEST = 10.0
 
 
@@ -89,9 +92,10 @@ def _series(a: float, b: float, z: Complex) -> Complex:
 def _inverse_laplace(a: float, b: float, z: complex) -> complex:
     """Return E_{a,b}(z) by the parabola ``s = mu (1 + i x)**2``."""
     poles = _poles(a, z)
-    mu, distance = _parabola(poles)
-    step = 2.0 * np.pi * distance / _DIGITS
-    reach = np.sqrt(1.0 + (_DIGITS + 2.0) / mu)
+    mu, distance = _parabola(poles, b - a)
+    # towards s = 0 the integrand grows where b > a, towards the far ends where b < a
+    step = 2.0 * np.pi * distance / (_DIGITS - 2.0 * max(b - a, 0.0) * np.log1p(-distance))
+    reach = np.sqrt(1.0 + (_DIGITS + 2.0 + max(a - b, 0.0) * _FAR) / mu)
     count = int(np.ceil(reach / step))
     root = 1.0 + 1j * step * np.arange(-count, count + 1)
     s = mu * root**2
@@ -104,7 +108,7 @@ def _inverse_laplace(a: float, b: float, z: complex) -> complex:
 def _residues(poles: Complex, b: float) -> Complex:
     """Return ``exp(s) s**(1-b)``, infinite of the right signs where it overflows."""
     exponents = poles + (1.0 - b) * np.log(poles)
-    if np.all(exponents.real < 700.0):
+    if np.all(np.maximum(exponents.real, poles.real) < _OVERFLOW):
         return np.asarray(np.exp(poles) * poles ** (1.0 - b))
     size, phase = np.exp(exponents.real), exponents.imag
     imaginary = np.where(np.sin(phase) == 0.0, 0.0, size * np.sin(phase))
@@ -121,9 +125,13 @@ def _poles(a: float, z: complex) -> Complex:
     return np.asarray(abs(z) ** (1.0 / a) * np.exp(1j * angle))
 
 
-def _parabola(poles: Complex) -> tuple[float, float]:
-    """Return mu and the distance over x of the nearest singularity; s = 0 is at distance one."""
+def _parabola(poles: Complex, power: float) -> tuple[float, float]:
+    """Return mu and the distance over x of the nearest singularity; s = 0 is at distance one.
+
+    Of parabolas on which ``s**-power`` is not so large that rounding is felt.
+    """
     places = np.sqrt(poles).real[:, None] / _VERTICES - 1.0
     distance = np.minimum(np.abs(places).min(axis=0, initial=1.0), 0.85)
-    best = int(np.argmax(distance))
+    large = _VERTICES**2 - 2.0 * power * np.log(_VERTICES) > _LARGE
+    best = int(np.argmax(np.where(large, 0.0, distance)))
     return float(_VERTICES[best] ** 2), float(distance[best])

@@ -140,3 +140,31 @@ def test_spectra_that_are_too_poor_to_tell_stability_are_not_counted_by():
     a.stable = b.stable = False
     assert "from 0 to 2" in unexplained(problem, a, b, [])
     assert hides_others(problem, a, b, [])
+
+
+def test_one_spectrum_that_is_too_poor_is_enough_to_count_by_none():
+    rich, poor = (SimpleNamespace(unstable=k, stable=k, spectrum=np.ones(3)) for k in (0, 2))
+    rich.stable, poor.stable = True, None
+    for a, b in ((rich, poor), (poor, rich)):
+        assert unexplained(Spectra(), a, b, []) == ""
+        assert not hides_others(Spectra(), a, b, [])
+
+
+@pytest.mark.parametrize(
+    ("further", "reason"),
+    [
+        (((), ()), "3 eigenvalues cross, some each way"),
+        (((), (-5.0,)), ""),  # which of them is new?
+        (((-5.0,), (-np.inf,)), ""),
+        (((-np.inf,), (-5.0,)), ""),
+    ],
+)
+def test_eigenvalues_are_followed_where_that_tells(further, reason):
+    # A real eigenvalue crosses, which is known, and a pair crosses the other way.
+    spectra = np.append(0.1, pairs(-0.1 + 9j)), np.append(-0.1, pairs(0.1 + 9j))
+    a, b = (
+        SimpleNamespace(unstable=count, stable=False, spectrum=np.append(spectrum, more))
+        for count, spectrum, more in zip((1, 2), spectra, further, strict=True)
+    )
+    assert unexplained(Spectra(), a, b, [1]) == reason
+    assert unexplained(Spectra(), b, a, [1]) == reason

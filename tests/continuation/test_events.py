@@ -1,12 +1,13 @@
 """Events: which there are, where, and which are none."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 
 from racs_bif.continuation import StepSettings, Stopped, trace
-from racs_bif.continuation.locating import apart
+from racs_bif.continuation.locating import apart, lowest_between
 
 TRUE = 0.31
 
@@ -84,6 +85,14 @@ def test_crossings_at_the_start_itself_are_not_told(kinds):
     branch = trace(problem, [np.sin(start), start], (-1, 1), [kinds.Fold()], direction=1)
     assert branch.message == ""
     assert branch.unexplained == []
+
+
+def test_crossings_beside_the_start_that_no_detector_sees_are_told(kinds):
+    start = TRUE - 1e-3
+    problem = kinds.Pairs(lambda p: p - TRUE)
+    branch = trace(problem, [np.sin(start), start], (-1, 1), [kinds.Fold()], direction=1)
+    ((low, high),) = branch.unexplained
+    assert low < TRUE < high < low + 1e-5
 
 
 def test_crossings_where_the_equations_fail_are_told(kinds):
@@ -189,6 +198,31 @@ def test_zero_at_an_accepted_point_counts_once(kinds, line):
     accepted = trace(line, [0, 0], (0, 1)).points[7].z[1]
     branch = trace(line, [0, 0], (0, 1), [kinds.Given(lambda z: z[1] - accepted)])
     assert found(branch) == [accepted]
+    assert branch.special[0].interval == 0.0
+
+
+def test_events_at_one_point_stay_in_their_order(kinds, line):
+    detectors = [
+        kinds.Given(lambda z, unit=unit: unit * (z[1] - 0.5) * (z[1] - 1.0)) for unit in (1, 2)
+    ]
+    detectors[1].label = "K"
+    branch = trace(line, [0.5, 0.5], (0, 1), detectors)
+    assert [special.name for special in branch.special] == ["G1", "K1", "G2", "K2"]
+    assert found(branch) == [0.5, 0.5, 1.0, 1.0]
+    assert (np.diff([point.arclength for point in branch.points]) >= 0.0).all()
+
+
+def test_a_start_that_cannot_be_left_one_way_is_no_event(kinds):
+    def f(x, p):
+        return x - p if p <= 0.5 else math.nan
+
+    half = kinds.Scalar(f, lambda x, p: 1.0, lambda x, p: -1.0, spectral=False)
+    for sign in (1.0, -1.0):
+        branch = trace(
+            half, [0.5, 0.5], (0, 1), [kinds.Given(lambda z, sign=sign: sign * (z[1] - 0.7))]
+        )
+        assert (branch.points[0].z[1], branch.points[-1].z[1]) == (0.0, 0.5)
+        assert branch.special == []
 
 
 @pytest.mark.parametrize(
@@ -209,6 +243,16 @@ def test_zero_at_an_accepted_point_counts_once(kinds, line):
 def test_touching_rounding_and_nan_are_no_events(kinds, line, function, start):
     branch = trace(line, [start, start], (0, 1), [kinds.Given(function)])
     assert branch.special == []
+
+
+def test_rounding_that_is_zero_between_points_is_no_event(kinds, line):
+    accepted = {point.z[1] for point in trace(line, [0, 0], (0, 1)).points}
+
+    def function(z):
+        noise = math.cos(1e17 * z[1])
+        return 1e-17 * (math.copysign(1.0, noise) if z[1] in accepted else round(noise))
+
+    assert trace(line, [0, 0], (0, 1), [kinds.Given(function)]).special == []
 
 
 @pytest.mark.parametrize("rounding", [-1e-16, -1e-14, 1e-16, 0.0])
@@ -242,6 +286,44 @@ def test_the_unit_of_a_function_that_dips_does_not_matter(kinds, line, unit):
     detector = kinds.Given(lambda z: unit * ((z[1] - 0.4321) ** 2 - 1e-8))
     branch = trace(line, [0, 0], (0, 1), [detector])
     np.testing.assert_allclose(found(branch), [0.432, 0.4322], atol=1e-10)
+
+
+@pytest.mark.parametrize("unit", [1.0, -100.0])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_where_a_function_may_dip_between_two_samples(unit, way):
+    def lowest(others, at=0.4, least=0.0):
+        def sample(share):
+            return 5.0 + way * share, unit * ((share - at) ** 2 + least)
+
+        return lowest_between((sample(0.0), sample(1.0)), [sample(share) for share in others])
+
+    for other in (-1.0, -0.5, 1.5, 2.0):
+        assert lowest([other]) == pytest.approx(0.4, rel=1e-12)
+        assert lowest([other], least=0.1) == pytest.approx(0.4, rel=1e-12)
+        assert lowest([other], least=1.0) is None  # it is too shallow
+        assert lowest([other], at=-0.2) is None
+        assert lowest([other], at=1.2) is None
+    # A sample of the other sign does not tell, the next one does.
+    assert lowest([0.5, -1.0], least=-0.05) == pytest.approx(0.4, rel=1e-12)
+
+
+def test_samples_at_one_place_tell_of_no_dip():
+    assert lowest_between(((5.0, 1.0), (5.0, 1.0)), [(4.0, 1.0)]) is None
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_step_of_height_one_beside_where_another_function_dips(kinds, line, sense):
+    dip = kinds.Given(lambda z: (z[1] - 0.4321) ** 2 - 1e-8)
+    step = kinds.Given(lambda z: math.copysign(1.0, sense * (z[1] - 0.43205)))
+    branch = trace(line, [0, 0], (0, 1), [dip, step])
+    np.testing.assert_allclose(found(branch), [0.432, 0.43205, 0.4322], atol=1e-10)
+
+
+def test_a_dip_that_ends_at_an_accepted_point_is_seen(kinds, line):
+    accepted = trace(line, [0, 0], (0, 1)).points[-6].z[1]
+    dip = kinds.Given(lambda z: (z[1] - accepted) * (z[1] - accepted + 3e-3) + 1e-16)
+    branch = trace(line, [0, 0], (0, 1), [dip])
+    np.testing.assert_allclose(found(branch), [accepted - 3e-3, accepted], atol=1e-10)
 
 
 def test_places_that_nearly_coincide_are_one():
@@ -302,6 +384,39 @@ def test_refinement_is_used_where_it_is_near(kinds, line):
         assert found(branch) == pytest.approx([0.25 + 1e-7], abs=1e-10)
 
 
+def test_a_detector_that_fails_sees_nothing(kinds, line):
+    def value(z):
+        if z[1] < 0.5:
+            msg = "singular"
+            raise np.linalg.LinAlgError(msg)
+        return z[1] - 0.75
+
+    branch = trace(line, [0, 0], (0, 1), [kinds.Given(value)])
+    assert found(branch) == pytest.approx([0.75], abs=1e-10)
+    assert math.isnan(branch.points[0].tests["G"])
+
+
+@pytest.mark.parametrize(("shift", "at"), [(1e-6, 0.25 + 1e-6), (0.1, 0.25)])
+def test_refinement_at_a_point_is_used_where_it_is_near(kinds, line, shift, at):
+    class Polished(kinds.Given):
+        def refine(self, problem, special):
+            return np.full(2, 0.25 + shift)
+
+    branch = trace(line, [0.25, 0.25], (0, 1), [Polished(lambda z: z[1] - 0.25)])
+    assert found(branch) == [at]
+
+
+def test_failing_polish_keeps_the_event_and_is_told(kinds, line):
+    class Failing(kinds.Given):
+        def refine(self, problem, special):
+            msg = "no way out"
+            raise np.linalg.LinAlgError(msg)
+
+    branch = trace(line, [0, 0], (0, 1), [Failing(lambda z: z[1] - 0.25)])
+    assert found(branch) == pytest.approx([0.25], abs=1e-10)
+    assert "G could not be polished (no way out) at p = 0.25." in branch.message
+
+
 def test_failing_description_keeps_the_event_and_is_told(kinds, line):
     class Failing(kinds.Given):
         def data(self, problem, point):
@@ -316,3 +431,28 @@ def test_failing_description_keeps_the_event_and_is_told(kinds, line):
 def test_tests_are_kept_in_the_points(kinds, line):
     branch = trace(line, [0, 0], (0, 1), [kinds.Given(lambda z: z[1] - 0.25)], targets=[0.5])
     assert all(point.tests == {"G": point.z[1] - 0.25} for point in branch.points)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, -1e3])
+def test_an_event_where_a_dip_divides_a_segment_is_found(kinds, line, unit):
+    def dips(z):
+        return (z[1] - 0.4321) ** 2 - 1e-8
+
+    plain = {point.z[1] for point in trace(line, [0, 0], (0, 1)).points}
+    divided = trace(line, [0, 0], (0, 1), [kinds.Given(dips)])
+    (middle,) = {point.z[1] for point in divided.points if not point.label} - plain
+    detectors = [kinds.Given(dips), kinds.Given(lambda z: unit * (z[1] - middle))]
+    branch = trace(line, [0, 0], (0, 1), detectors)
+    np.testing.assert_allclose(found(branch), [0.432, middle, 0.4322], atol=1e-10)
+    assert all(b.arclength > a.arclength for a, b in itertools.pairwise(branch.points))
+    wanted = trace(line, [0, 0], (0, 1), [kinds.Given(dips)], targets=[middle])
+    np.testing.assert_allclose(found(wanted), [0.432, middle, 0.4322], atol=1e-10)
+
+
+def test_a_walk_that_cannot_begin_makes_no_events_of_the_start(kinds):
+    half = kinds.Scalar(
+        lambda x, p: p - x * x if x >= 0 else math.nan, lambda x, p: -2 * x, lambda x, p: 1.0
+    )
+    detectors = [kinds.Given(lambda z: z[1] - 0.5)]
+    branch = trace(half, [0, 0], (0, 1), detectors, targets=[0.7])
+    np.testing.assert_allclose(found(branch), [0.5, 0.7], atol=1e-10)

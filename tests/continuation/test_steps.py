@@ -31,6 +31,7 @@ def test_steps_walks_both_ways(fold):
     for direction in (1, -1):
         points = list(steps(fold, [1.0, 1.0], (-1, 2), direction=direction))
         assert np.sign(points[1].z[1] - 1) == direction
+        assert points[0].arclength == 0.0
         assert all(b.arclength > a.arclength for a, b in itertools.pairwise(points))
 
 
@@ -53,6 +54,7 @@ def test_step_sizes_obey_their_limits(fold):
     [
         ({"initial": -1.0}, "'initial'"),
         ({"tolerance": math.nan}, "'tolerance'"),
+        ({"tolerance": 0.0}, "'tolerance'"),
         ({"minimum": 0.1}, "minimum <= initial"),
         ({"initial": 0.5}, "minimum <= initial"),
         ({"angle": 2.0}, "'angle'"),
@@ -96,6 +98,45 @@ def test_steps_of_one_length_only_are_allowed():
     assert settings.minimum == settings.initial == settings.maximum
 
 
+def test_steps_may_turn_by_nearly_a_right_angle():
+    assert StepSettings(angle=1.5).angle == 1.5
+    with pytest.raises(UsageError, match="'angle'"):
+        StepSettings(angle=math.pi / 2)
+
+
+def test_tangents_turn_by_less_than_a_third_of_a_radian(kinds):
+    bent = kinds.Scalar(
+        lambda x, p: x - math.tanh(50 * p),
+        lambda x, p: 1.0,
+        lambda x, p: -50 / math.cosh(50 * p) ** 2,
+    )
+    points = steps(bent, [-1.0, -1.0], (-1, 1))
+    scaled = np.array([[point.tangent[0], point.tangent[1] / 2] for point in points])
+    angles = np.arccos(np.minimum((scaled[1:] * scaled[:-1]).sum(axis=1), 1.0))
+    assert 0.1 < angles.max() < 1 / 3
+
+
+def test_each_unknown_foresees_its_own_magnitude():
+    scaling = Scaling(10.0, np.full(2, 1e-9))
+    assert scaling.foresee(np.array([1.0, 4.0, 2.0]))
+    for unknown in ([0.005, 0.0, 0.0], [0.0, 0.02, 0.0]):  # within a thousandth of the span
+        assert scaling.norm(np.array(unknown)) == pytest.approx(math.sqrt(0.5))
+
+
+@pytest.mark.parametrize(
+    ("at", "tangent", "longest"),
+    [
+        ([0.5, 1.0], [0.2, -2.0, 0.5], 1 / 15),  # y by a thirtieth of 4
+        ([0.5, -3.99], [0.2, -2.0, 0.5], 1 / 3),  # y grows: x by a thirtieth of 2
+        ([0.5, -3.99], [0.0, -2.0, 0.0], 1.0),  # y grows, by half of what it was
+    ],
+)
+def test_the_longest_step_by_each_unknown(at, tangent, longest):
+    scaling = Scaling(10.0, np.array([2.0, 4.0]))
+    step = scaling.longest(np.array([*at, 5.0]), np.array(tangent), 1 / 30)
+    assert step == pytest.approx(longest, rel=1e-12)
+
+
 def test_only_the_parameter_bends_a_branch():
     scaling = Scaling(2.0, np.ones(3))
     before, after = np.array([1.0, 2.0, 3.0, 0.5]), np.array([1.0, 7.0, -3.0, 0.5])
@@ -123,9 +164,22 @@ def test_when_a_branch_counts_as_running_to_infinity(at, tangent, outgrown):
     assert scaling.outgrown(np.array([*at, 50.0]), np.array(tangent)) is outgrown
 
 
+def test_running_to_infinity_does_not_depend_on_units():
+    scaling, at = Scaling(100.0, np.full(2, 1e-9)), np.array([1e-9, 2e-4, 50.0])
+    assert scaling.outgrown(at, np.array([0.0, 1e-6, 0.0]))
+    assert not scaling.outgrown(at, np.array([0.0, -1e-6, 0.0]))
+
+
 def test_a_start_is_corrected_across_a_tangent_along_one_axis(circle):
     start = next(steps(circle, [0.1, 0.9], (-2, 2), tangent=[1.0, 0.0]))
     assert start.z == pytest.approx([0.1, math.sqrt(0.99)], rel=1e-12)
+
+
+def test_a_start_is_not_corrected_across_a_tangent_far_from_its_branch(line):
+    start, tangent = np.array([0.4, 0.6]), np.array([0.3, -1.0])
+    z, _, iterations, _ = begin(line, start, (0, 1), StepSettings(), tangent)
+    assert z.tolist() == [0.4, 0.6]
+    assert iterations == 0
 
 
 def test_the_first_tangent_is_of_length_one_though_the_scales_grew(circle):

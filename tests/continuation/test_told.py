@@ -72,6 +72,14 @@ def test_the_table_shows_all_of_few_unknowns_and_their_norm(line, caplog):
     assert [float(number) for number in shown] == [0.5, 5.0, 3.0, 4.0]
 
 
+def test_the_table_shows_the_first_three_of_many_unknowns(line, caplog):
+    point = Point(np.arange(6.0), np.ones(6), np.zeros(0, complex), None, 0, {}, 0.0, 1)
+    with caplog.at_level(logging.INFO, logger="racs_bif.continuation"):
+        Table(line, 7, 1).tell([(point, None)])
+    head = caplog.messages[1].split()
+    assert [name for name in head if name.startswith("U(")] == ["U(1)", "U(2)", "U(3)"]
+
+
 def test_names_that_are_too_long_for_their_column_are_cut(kinds, caplog):
     problem = kinds.Scalar(lambda x, p: x - p, lambda x, p: 1.0, lambda x, p: -1.0)
     problem.parameter = "a_parameter_of_a_long_name"

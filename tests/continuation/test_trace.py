@@ -194,6 +194,22 @@ def test_a_ring_far_from_the_parameter_closes(kinds):
     assert len(branch.points) < 400
 
 
+def test_a_ring_closes_however_narrow_another_bound(kinds):
+    class Ring(kinds.Scalar):
+        def residual(self, z):
+            return np.array([z[0] ** 2 + z[2] ** 2 - 1.0, z[1] - 50.0 - 1e-3 * z[0]])
+
+        def jacobian(self, z):
+            return np.array([[2.0 * z[0], 0.0, 2.0 * z[2]], [-1e-3, 1.0, 0.0]])
+
+        def bounds(self):
+            return ((-2, 49.9, 50.1),)
+
+    ring, settings = Ring(None, None, None, spectral=False), StepSettings(points=400)
+    branch = trace(ring, [1.0, 50.001, 0.0], (-2, 2), (), settings)
+    assert branch.stopped is Stopped.CLOSED
+
+
 def test_given_tangent_is_corrected_onto_the_branch(circle):
     branch = trace(circle, [0.6, 0.79], (-2, 2), tangent=[-0.8, 0.6])
     assert branch.stopped is Stopped.CLOSED
@@ -218,6 +234,21 @@ def test_a_start_beyond_the_span_by_rounding_is_at_its_end(line, end, off):
     branch = trace(line, [end + off, end + off], (0, 1))
     assert branch.points[0].z[1] == end
     assert len(branch.points) > 10
+
+
+def test_rounding_at_an_end_of_the_span_is_relative_to_its_width(line):
+    branch = trace(line, [1e6, 1e6 + 1e-7], (-1e6, 1e6))
+    assert branch.points[0].z.tolist() == [1e6, 1e6]
+
+
+@pytest.mark.parametrize("start", [0.0, 0.25, 1.0])
+def test_arclength_is_that_of_the_parameter_on_a_level_branch(kinds, start):
+    level = kinds.Scalar(lambda x, p: x - 1.0, lambda x, p: 1.0, lambda x, p: 0.0)
+    branch = trace(level, [1.0, start], (0, 1))
+    length = [point.arclength for point in branch.points]
+    p = column(branch, 1)
+    np.testing.assert_allclose(length, np.abs(p - p[0]), atol=1e-12)
+    np.testing.assert_allclose([abs(point.tangent[1]) for point in branch.points], 1.0)
 
 
 def test_a_branch_that_is_put_in_order_keeps_its_arclength(line):
@@ -252,6 +283,13 @@ def test_a_start_beyond_the_span_with_other_unknowns_about_is_at_its_end():
     assert branch.points[-1].parameter == 0.0
 
 
+def test_a_start_is_solved_at_its_parameter_which_then_increases():
+    problem = Two(0.3, lambda y, p: y + p - 7.0, lambda y, p: 1.0, lambda y, p: 1.0)
+    branch = trace(problem, [0.2, 6.0, 0.25], (0, 1), direction=1)
+    assert branch.points[0].z == pytest.approx([0.3, 6.75, 0.25], rel=1e-12)
+    assert (np.diff(column(branch, 2)) > 0.0).all()
+
+
 def test_one_of_two_unknowns_runs_to_infinity():
     problem = Two(1.0, lambda y, p: y * (1.0 - p) - 1.0, lambda y, p: 1.0 - p, lambda y, p: -y)
     branch = trace(problem, [1.0, 1.0, 0.0], (-1, 2), direction=1)
@@ -273,6 +311,11 @@ def test_a_given_tangent_at_an_end_of_the_span_is_followed_inwards(line, end, se
     branch = trace(line, [end, end], (0, 1), tangent=[sense, sense])
     assert {branch.points[0].z[1], branch.points[-1].z[1]} == {0.0, 1.0}
     assert branch.points[0].z[1] == end
+
+
+def test_a_given_tangent_may_be_short(line):
+    branch = trace(line, [0.5, 0.5], (0, 1), tangent=[1e-3, 1e-3])
+    assert (branch.points[0].parameter, branch.points[-1].parameter) == (0.0, 1.0)
 
 
 def test_given_tangent_switches_branches(pitchfork):
@@ -335,6 +378,13 @@ def test_an_unknown_that_is_not_zero_keeps_its_magnitude_where_another_leaves_ze
     assert scaling.norm(np.array([0.0, 5.0, 0.0])) == pytest.approx(math.sqrt(0.5), rel=1e-3)
 
 
+def test_an_unknown_that_is_not_zero_at_the_start_keeps_its_magnitude(kinds):
+    upright = kinds.Scalar(lambda x, p: p, lambda x, p: 0.0, lambda x, p: 1.0)
+    start, tangent = np.array([0.5, 0.0]), np.array([1.0, 0.0])
+    scaling = begin(upright, start, (-1, 1), StepSettings(), tangent)[3]
+    assert scaling.norm(start) == pytest.approx(1.0, rel=1e-12)
+
+
 def test_a_branch_that_leaves_zero_to_one_side_only_takes_natural_steps(kinds):
     def f(x, p):
         return p * x - x**3 if x >= 0.0 else math.nan
@@ -345,12 +395,13 @@ def test_a_branch_that_leaves_zero_to_one_side_only_takes_natural_steps(kinds):
     np.testing.assert_allclose(branch.points[-1].z, [1, 1], atol=1e-12)
 
 
-def test_given_tangent_that_leads_nowhere_is_an_error(kinds):
+@pytest.mark.parametrize("direction", [None, 1, -1])
+def test_given_tangent_that_leads_nowhere_is_an_error(kinds, direction):
     cross = kinds.Scalar(
         lambda x, p: x * x + p * p + 1e-3, lambda x, p: 2 * x, lambda x, p: 2 * p, spectral=False
     )
     with pytest.raises(ConvergenceError, match="tangent"):
-        trace(cross, [0, 0], (-1, 1), tangent=[1, 0.5])
+        trace(cross, [0, 0], (-1, 1), tangent=[1, 0.5], direction=direction)
 
 
 def test_parallel_branch_is_not_jumped_to(kinds):
@@ -439,23 +490,36 @@ class Turning(Problem):
     name = "turning"
     parameter = "p"
 
-    def __init__(self, sense):
-        self.sense = sense
+    def __init__(self, sense, side=1):
+        self.sense, self.side = sense, side
 
     def residual(self, z):
-        return np.array([z[2] - (z[0] - 5.0) ** 2, z[1] - 9.0 - self.sense * z[0]])
+        return np.array([z[2] - self.side * (z[0] - 5.0) ** 2, z[1] - 9.0 - self.sense * z[0]])
 
     def jacobian(self, z):
-        return np.array([[-2.0 * (z[0] - 5.0), 0.0, 1.0], [-self.sense, 1.0, 0.0]])
+        bend = -2.0 * self.side * (z[0] - 5.0)
+        return np.array([[bend, 0.0, 1.0], [-self.sense, 1.0, 0.0]])
+
+
+def test_a_start_on_a_fold_sets_off_with_its_largest_unknown_growing(fold):
+    branch = trace(fold, [0, 0], (-1, 2), direction=1)
+    assert branch.points[1].z[0] > 0.0
+    for sense, y, largest in ((1.0, 14.0, 0), (-1.0, 4.0, 1)):
+        branch = trace(Turning(sense), [5.0, y, 0.0], (-1, 1), direction=1)
+        assert branch.points[1].z[largest] > branch.points[0].z[largest]
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_target_just_short_of_a_fold_of_two_unknowns_is_met_in_a_walk_of_one_step(sense):
-    problem, settings = Turning(sense), StepSettings(initial=4e-3, points=1)
-    start = [4.99, 9.0 + sense * 4.99, 1e-4]
-    branch = trace(problem, start, (-1, 1), (), settings, targets=[1e-6], direction=-1)
-    assert branch.points[-1].z[0] > 5.005
-    np.testing.assert_allclose([s.z[0] for s in branch.special], [4.999, 5.001], atol=LOCATED)
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_target_just_short_of_a_fold_of_two_unknowns_is_met_in_a_walk_of_one_step(sense, side, way):
+    problem, settings = Turning(sense, side), StepSettings(initial=4e-3, points=1)
+    x = 5.0 - way * 0.01
+    start = [x, 9.0 + sense * x, side * 1e-4]
+    branch = trace(problem, start, (-1, 1), (), settings, targets=[side * 1e-6], direction=-side)
+    assert way * (branch.points[-1].z[0] - 5.0) > 0.005
+    found = [5.0 + way * (s.z[0] - 5.0) for s in branch.special]
+    np.testing.assert_allclose(found, [4.999, 5.001], atol=LOCATED)
 
 
 def test_equations_that_fail_where_the_parameter_turns_back_end_nothing(kinds):
@@ -533,6 +597,33 @@ def test_start_at_the_edge_sent_outwards_has_one_point(line):
     assert branch.stopped is Stopped.SPAN
 
 
+def test_start_at_the_edge_sent_outwards_has_one_point_whatever_else_is_bounded(kinds):
+    class Bounded(kinds.Scalar):
+        def bounds(self):
+            return ((-2, -5.0, 5.0),)
+
+    line = Bounded(lambda x, p: x - p, lambda x, p: 1.0, lambda x, p: -1.0)
+    branch = trace(line, [0, 0], (0, 1), direction=-1)
+    assert len(branch.points) == 1
+    assert branch.stopped is Stopped.SPAN
+
+
+def test_a_fold_at_an_end_of_the_span_is_left_both_ways(fold):
+    branch = trace(fold, [0, 0], (0, 1))
+    ends = sorted(branch.points[k].z[0] for k in (0, -1))
+    assert ends == pytest.approx([-1.0, 1.0], rel=1e-12)
+
+
+def test_a_branch_that_is_level_at_the_end_of_its_span_ends_there(kinds):
+    problem = kinds.Scalar(
+        lambda x, p: x - 1.0 - (p - 1.0) ** 2, lambda x, p: 1.0, lambda x, p: -2.0 * (p - 1.0)
+    )
+    branch = trace(problem, [2, 0], (0, 1))
+    assert branch.stopped is Stopped.SPAN
+    assert branch.points[-1].z == pytest.approx([1.0, 1.0], rel=1e-12)
+    assert len(branch.points) < 40
+
+
 @pytest.mark.parametrize(
     ("z", "span", "message"),
     [
@@ -563,9 +654,10 @@ def test_unusable_direction_and_tangent_are_named(line):
         trace(line, [0.5, 0.5], (0, 1), tangent=[0, 0])
 
 
-def test_start_without_a_solution_names_the_parameter(fold):
-    with pytest.raises(ConvergenceError, match=r"scalar: no solution .* p = -0\.5"):
-        trace(fold, [1, -0.5], (-1, 2))
+@pytest.mark.parametrize("z", [[1, -0.5], [0.01, -0.001]])
+def test_start_without_a_solution_names_the_parameter(fold, z):
+    with pytest.raises(ConvergenceError, match=rf"scalar: no solution .* p = {z[1]} "):
+        trace(fold, z, (-1, 2))
 
 
 def test_start_far_from_its_solution_is_found(kinds):
@@ -600,6 +692,22 @@ def test_progress_sees_every_accepted_point(line):
     seen = []
     branch = trace(line, [0.5, 0.5], (0, 1), progress=seen.append)
     assert sorted(point.z[1] for point in seen) == column(branch, 1).tolist()
+    assert seen[0].z[1] == 0.5
+
+
+def test_until_sees_every_step_and_ends_the_branch(line):
+    seen = []
+
+    def until(before, point):
+        seen.append(before)
+        return Stopped.VALIDITY if point.parameter > 0.7 else None
+
+    branch = trace(line, [0.5, 0.5], (0, 1), until=until)
+    assert seen[0].parameter == 0.5
+    assert seen[0].arclength == 0.0
+    assert len(seen) == len(branch.points) - 1
+    assert (branch.stopped, branch.stopped_backward) == (Stopped.VALIDITY, Stopped.SPAN)
+    assert 0.7 < branch.points[-1].parameter < 0.75
 
 
 def test_most_points(line):
@@ -620,6 +728,23 @@ def test_equations_that_fail_end_the_branch_where_they_fail(kinds):
     assert branch.stopped is Stopped.FAILED
     assert branch.points[-1].z[1] == pytest.approx(0.5, abs=1e-6)
     assert "no tyre force" in branch.message
+
+
+@pytest.mark.parametrize("low", [-1.0, 0.3])
+@pytest.mark.parametrize("tangent", [None, [1.0, 1.0]])
+def test_each_end_of_a_branch_has_its_own_reason(kinds, low, tangent):
+    def f(x, p):
+        if not low <= p < 0.7:
+            msg = "outside its domain"
+            raise FloatingPointError(msg)
+        return x - p
+
+    problem = kinds.Scalar(f, lambda x, p: 1.0, lambda x, p: -1.0)
+    branch = trace(problem, [0.5, 0.5], (0, 1), tangent=tangent)
+    assert branch.stopped is Stopped.FAILED
+    assert branch.stopped_backward is (Stopped.FAILED if low > 0.0 else Stopped.SPAN)
+    assert branch.points[0].parameter == pytest.approx(max(low, 0.0), abs=1e-6)
+    assert branch.points[-1].parameter == pytest.approx(0.7, abs=1e-6)
 
 
 def test_a_start_that_cannot_be_left_is_a_branch_of_one_point(kinds):
@@ -801,3 +926,12 @@ def test_unknown_special_point_lists_those_there_are(fold, kinds):
     branch = trace(fold, [1, 1], (-1, 2), [kinds.Fold()])
     with pytest.raises(KeyError, match="LP1"):
         branch["H1"]
+
+
+@pytest.mark.parametrize("beside", [0.0, 1e-11, -1e-9, 1e-8, -1e-7, 3e-7, 1e-6, -1e-4])
+def test_a_start_beside_a_fold_sets_off_as_from_anywhere(kinds, beside):
+    problem = kinds.Scalar(lambda x, p: p - (x - 5) ** 2, lambda x, p: -2 * (x - 5), lambda x, p: 1)
+    branch = trace(problem, [5 + beside, beside**2], (-1, 1), [kinds.Fold()])
+    assert branch.stopped is branch.stopped_backward is Stopped.SPAN
+    assert {round(point.z[0], 9) for point in (branch.points[0], branch.points[-1])} == {4.0, 6.0}
+    assert len(branch.points) < 80

@@ -19,7 +19,7 @@ from racs_bif.fractional.certificates import (
     resolve,
 )
 from racs_bif.fractional.diffusive import Diffusive
-from racs_bif.fractional.enclosed import EnclosedModel
+from racs_bif.fractional.enclosed import EnclosedModel, EnclosedSum, _Term
 from racs_bif.fractional.exact_fold import _magnitudes, solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.fractional.intervals import BALLS, Ball, BallFunctions, UnboundedError, finite
@@ -139,6 +139,13 @@ def test_folds_are_solved_and_proved(parabola):
     assert np.all(box.upper >= [2.0, 1.0])
     with pytest.raises(NoneThereError, match="no fold"):
         prove_fold(parabola.exact, path, np.array([2.3]), 1.3)
+
+
+def test_a_fold_where_the_parameter_is_zero_is_proved(system_of):
+    system = system_of({"x": "mu-(x-2)**2"}, parameters={"mu": 1.0}, guess={"x": 3.0})
+    box = prove_fold(system.exact, system.path("mu"), np.array([2.0]), 0.0)
+    assert box.lower[1] <= 0.0 <= box.upper[1]
+    assert 0.0 < box.radii[1] < 0.01
 
 
 def test_a_degenerate_point_is_not_proved(system_of):
@@ -311,8 +318,22 @@ def test_what_is_undecided_is_an_error():
     assert BALLS.sign(Ball(arb(-2))) == -1.0
     assert BALLS.sign(Ball(arb(2))) == 1.0
     assert BALLS.sign(Ball(arb(0))) == 0.0
+    assert BALLS.sign(Ball(arb(0.5))) == -BALLS.sign(Ball(arb(-0.5))) == 1.0
     assert BALLS.where(True, right, wide) is right
     assert BALLS.absorb(Ball(arb(1)) / 0.0, 0.0) == 0.0
+
+
+def test_sums_of_powers_are_enclosed():
+    def term(c, e, radius=0.0):
+        return _Term(arb(c), arb(e, radius), arb(0), arb(0))
+
+    s, log_s = 1.3j, acb(arb(1.3).log(), arb.pi() / 2)
+    total = EnclosedSum((term(2, 0), term(3, 1), term(5, 0.5)))
+    assert inside(total(log_s), 2.0 + 3.0 * s + 5.0 * s**0.5)
+    assert inside(total.slope(log_s), 3.0 + 2.5 * s**-0.5)
+    assert total.at_zero == 2
+    with pytest.raises(UnboundedError, match="an order of a law passes zero in the box"):
+        _ = EnclosedSum((term(2, 0, 0.1),)).at_zero
 
 
 def test_constants_that_were_rounded_are_balls():
@@ -357,6 +378,21 @@ def test_the_shift_of_a_state_is_relative_to_its_size(parabola):
     found = resolve(parabola.exact, parabola.path("mu"), place)
     assert pytest.approx([2.0]) == found.X
     assert found.shift == pytest.approx(0.01 / 2.01, rel=1e-6)
+    assert found.omega == 0.0
+
+
+@pytest.mark.parametrize(
+    ("value", "options", "size"),
+    [(0.02, {}, 0.02), (0.02, {"width": 1.0}, 0.1), (0.0, {}, 1e-3)],
+    ids=["itself", "width of the branch", "zero"],
+)
+def test_the_shift_of_the_parameter_is_relative_to_its_size(system_of, value, options, size):
+    system = system_of({"x": "mu-m-(x-2)**2"}, parameters={"mu": 1.0, "m": value}, guess={"x": 3.0})
+    path, X = system.path("mu"), np.array([2.0])
+    found = resolve(system.exact, path, Place(X=X, value=value + 5e-3 * size), **options)
+    assert found.shift == pytest.approx(5e-3, rel=1e-6)
+    with pytest.raises(ConvergenceError, match=r"relative shift 2\.0e-02, accepted 0\.01"):
+        resolve(system.exact, path, Place(X=X, value=value + 0.02 * size), **options)
 
 
 def test_states_are_near_by_their_size():
@@ -364,6 +400,8 @@ def test_states_are_near_by_their_size():
     for scale in (1e-3, 1.0, 1e3):
         assert near(scale * one, scale * (one + 0.09))
         assert not near(scale * one, scale * (one + 0.12))
+    assert near(np.zeros(2), np.full(2, 4e-8))
+    assert not near(np.zeros(2), np.full(2, 6e-8))
 
 
 def test_counts_on_both_sides_of_a_fold(parabola):
@@ -472,6 +510,7 @@ def test_a_count_where_no_equilibrium_is_refused(parabola):
 def test_what_special_points_allow():
     assert changes([]) == {0}
     assert changes(["H"]) == {-2, 2}
+    assert changes(["LP"]) == {-1, 1}
     assert changes(["BP"]) == {-1, 0, 1}
     assert changes(["H", "H"]) == {-4, 0, 4}
 

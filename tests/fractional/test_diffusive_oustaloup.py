@@ -8,6 +8,7 @@ import pytest
 
 from racs_bif.errors import ParameterError, RacsBifError, UsageError
 from racs_bif.fractional.diffusive import Diffusive
+from racs_bif.fractional.laws import Law, PowerSum
 from racs_bif.fractional.oustaloup import Oustaloup
 from racs_bif.fractional.residues import checked_rates
 
@@ -202,6 +203,7 @@ def test_default_orders_follow_the_band():
     assert Diffusive(band=(1.0, 2.0)).order == 4
     assert Oustaloup(band=(1.0, 1e4)).sections == 8
     assert Oustaloup(band=(1.0, 2.0)).sections == 3
+    assert Oustaloup(band=(1.0, 2.0), sections=1).sections == 1
 
 
 def test_oustaloup_refuses_what_it_cannot_realise(law_of):
@@ -210,6 +212,9 @@ def test_oustaloup_refuses_what_it_cannot_realise(law_of):
         realisation.realise(law_of("1/(1 + s**q)", q=0.5)[0])
     with pytest.raises(ParameterError, match=r"orders between 0 and 1, 'Z' has 1\.5"):
         realisation.realise(law_of("(1 + s**q)/(1 + s**a)", q=1.5, a=0.6)[0])
+    sides = (PowerSum(np.ones(1), np.array([order])) for order in (-0.5, 0.0))
+    with pytest.raises(ParameterError, match=r"orders between 0 and 1, 'Z' has -0\.5"):
+        realisation.realise(Law(*sides))
 
 
 @pytest.mark.parametrize("name", REALISATIONS)
@@ -232,7 +237,7 @@ def test_five_rates_a_decade_unless_told():
 
 
 def test_poles_that_coincide_are_refused():
-    np.testing.assert_array_equal(checked_rates(np.array([-3.0, -1.0]), "m", "Z"), [1.0, 3.0])
+    np.testing.assert_array_equal(checked_rates(np.array([-1.5, -1.0]), "m", "Z"), [1.0, 1.5])
     for poles in (
         [-1.0, 0.0],
         [-1.0, -2.0, -2.0],
@@ -244,3 +249,9 @@ def test_poles_that_coincide_are_refused():
             checked_rates(np.array(poles), "m", "Z")
     with pytest.raises(ParameterError, match=r"a pole of 'Z' at -2 rad/s"):
         checked_rates(np.array([-1.0, -2.0, -3.0, -2.0]), "m", "Z")
+
+
+def test_a_narrow_band_has_samples_enough(law_of):
+    law = law_of(VISCOELASTIC, ts=1.0, te=1.0, a=0.3, g=0.7)[0]
+    assert Diffusive(band=(1.0, 1.1), order=3).error(law) < 5e-3
+    assert Diffusive(band=(1.0, 1.1), order=8).error(law) < 1e-6

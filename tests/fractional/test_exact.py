@@ -351,3 +351,18 @@ def test_a_guess_where_the_slope_is_undefined(system_of):
 def test_a_guess_where_the_slope_is_infinite_is_no_equilibrium(system_of, equations):
     with pytest.raises(ConvergenceError, match="no equilibrium found"):
         system_of(equations).equilibrium()
+
+
+def test_beside_a_fold_at_zero(system_of):
+    """What is small there is not small compared with the state."""
+    system = system_of({"x": "exp(x + 1) - q*(x + 1)"}, parameters={"q": 3.0})
+    for beside in np.geomspace(1e-12, 1e-9, 60):
+        X = system.exact.equilibrium(np.array([1e-5]), np.array([np.e + beside]))
+        assert X[0] == pytest.approx(np.sqrt(2.0 * beside / np.e), abs=1e-8)
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e3])
+def test_far_equilibria_are_reached_in_any_unit(system_of, unit):
+    system = system_of({"x": "-atan(x/c - 1)"}, parameters={"c": unit})
+    X = system.exact.equilibrium(np.array([4.0 * unit]), np.array([unit]))
+    assert X[0] == pytest.approx(unit, rel=1e-12)

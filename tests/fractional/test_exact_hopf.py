@@ -8,7 +8,8 @@ import pytest
 from scipy.optimize import brentq
 
 from racs_bif.errors import ConvergenceError
-from racs_bif.fractional.exact_fold import solve_fold
+from racs_bif.fractional import exact_fold, exact_hopf
+from racs_bif.fractional.exact_fold import null_vectors, solve_fold
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.fractional.realised_hopf import _eigenpair, solve_realised_hopf
 
@@ -204,8 +205,6 @@ def test_no_hopf_point_is_said_in_words(system_of):
 
 def test_few_iterations(vehicle, monkeypatch):
     """Newton's method converges quadratically: rounding must not keep it going."""
-    from racs_bif.fractional import exact_hopf
-
     system, calls = vehicle.with_parameters({"u": 10.25}), []
     inner = exact_hopf._system
     monkeypatch.setattr(exact_hopf, "_system", lambda *a: calls.append(a) or inner(*a))
@@ -262,3 +261,65 @@ def test_an_eigenvalue_of_a_stiff_matrix_is_sharp():
     assert abs(mu - expected) < 1e-13 * abs(expected)
     assert complex(np.vdot(left, right)) == pytest.approx(1.0, rel=1e-12)
     np.testing.assert_allclose((A @ right)[:2], mu * right[:2], rtol=1e-9)
+
+
+def test_what_corrections_of_a_hopf_point_are_compared_with():
+    for q in ([-0.7, 0.1, 0.2, 0.3], [0.1, -0.7, 0.2, 0.3]):
+        size = exact_hopf._magnitudes(np.array([3.0, 1e-9, 1e-6, 9.0, *q]), 2)
+        assert size == pytest.approx([3.0, 9e-3, 9e-3, 9.0, 0.7, 0.7, 0.7, 0.7])
+    size = exact_fold._magnitudes(np.array([3.0, 1e-9, 1e-6, 0.1, -0.7]), 2)
+    assert size == pytest.approx([3.0, 3e-3, 1e-3, 0.7, 0.7])
+
+
+def test_what_is_no_hopf_point_is_refused(system_of, monkeypatch):
+    system = system_of({"x": "y", "y": "(mu - 1 - x**2)*y - x/4"}, parameters={"mu": 1.2})
+    of = system.exact, system.path("mu"), np.zeros(2), 1.2
+    assert solve_hopf(*of, 0.45).omega == pytest.approx(0.5, rel=1e-12)
+    with pytest.raises(ConvergenceError, match="no exact Hopf"):
+        solve_hopf(*of, -0.45)
+    monkeypatch.setattr(exact_hopf, "_ITERATIONS", 2)
+    with pytest.raises(ConvergenceError, match="no exact Hopf"):
+        solve_hopf(*of, 0.45)
+
+
+def test_null_vectors_of_badly_scaled_matrices():
+    matrix = np.array([[1.0, 20.0, 300.0], [4.0, -50.0, 6.0], [5.0, -30.0, 306.0]])
+    right = null_vectors(np.diag([1e-6, 1.0, 1e6]) @ matrix)[1]
+    assert matrix @ right == pytest.approx(np.zeros(3), abs=1e-11)
+    assert np.linalg.norm(right) == pytest.approx(1.0)
+    left = null_vectors(np.array([[3.0, 1.0], [0.0, 0.0]]))[0]
+    assert np.abs(left) == pytest.approx([0.0, 1.0], abs=1e-15)
+
+
+def test_the_null_vector_of_a_fold_has_length_one(system_of):
+    system = system_of({"x": "q - exp(x) + 3*x", "y": "100*x - y"}, parameters={"q": 1.0})
+    fold = solve_fold(system.exact, system.path("q"), np.array([1.1, 110.0]), -0.3)
+    assert fold.value == pytest.approx(3.0 - 3.0 * math.log(3.0), rel=1e-12)
+    assert fold.v[1] == pytest.approx(100.0 * fold.v[0], rel=1e-12)
+    assert np.linalg.norm(fold.v) == pytest.approx(1.0, rel=1e-3)
+
+
+def test_a_realised_hopf_point_beside_another_pair(system_of):
+    """Eigenvalues 3 (mu - 0.3) + (mu + 0.2) i, as a = mu, and 0.45 + 0.55 i."""
+    system = system_of(
+        {
+            "a": "mu - a",
+            "x": "(mu + 2*a - 0.9)*x - (mu + 0.2)*y",
+            "y": "(mu + 0.2)*x + (mu + 2*a - 0.9)*y",
+            "v": "0.45*v - 0.55*w",
+            "w": "0.55*v + 0.45*w",
+        },
+        parameters={"mu": 0.2},
+    )
+    found = solve_realised_hopf(system, system.path("mu"), np.zeros(5), 0.2, 0.45)
+    assert found.value == pytest.approx(0.3, rel=1e-12)
+    assert found.omega == pytest.approx(0.5, rel=1e-12)
+    assert found.slope == pytest.approx(3.0 + 1.0j, rel=1e-12)
+    assert found.x == pytest.approx([0.3, 0.0, 0.0, 0.0, 0.0], abs=1e-12)
+
+
+def test_a_realised_hopf_point_whose_first_corrections_grow(system_of):
+    growth = "((mu - 1)**3 + 1)"
+    system = system_of({"x": f"{growth}*x - y/2", "y": f"x/2 + {growth}*y"}, parameters={"mu": 2.5})
+    found = solve_realised_hopf(system, system.path("mu"), np.zeros(2), 2.5, 0.5)
+    assert found.value == pytest.approx(0.0, abs=1e-12)

@@ -17,7 +17,7 @@ def reference(a, b, z):
         while True:
             term = z**k * mpmath.rgamma(a * k + b)
             total += term
-            if k > 5 and a * k > size and abs(term) < mpmath.mpf(10) ** -40:
+            if k > 5 and a * k + min(b, 0) > size and abs(term) < mpmath.mpf(10) ** -40:
                 return complex(total)
             k += 1
 
@@ -81,3 +81,41 @@ def test_up_to_the_largest_number():
     assert complex(mittag_leffler(0.5, 1.0, z)) == pytest.approx(expected, rel=1e-10)
     expected *= complex(705.0, 1.0) ** 0.25
     assert complex(mittag_leffler(0.5, 0.75, z)) == pytest.approx(expected, rel=1e-10)
+
+
+def test_both_parameters_two():
+    x = np.linspace(1.0, 6.0, 11)
+    assert mittag_leffler(2.0, 2.0, -(x**2)) == pytest.approx(np.sin(x) / x, abs=2e-13)
+
+
+def test_second_parameters_up_to_ten_are_taken():
+    for b in (-9.5, 9.5, 10.0):
+        expected = reference(0.7, b, 0.5).real
+        assert mittag_leffler(0.7, b, 0.5) == pytest.approx(expected, rel=1e-12)
+    for b in (-10.5, 10.5):
+        with pytest.raises(UsageError, match=r"\|b\| <= 10"):
+            mittag_leffler(0.7, b, 0.5)
+
+
+@pytest.mark.parametrize("b", [2.5, 3.0])
+def test_a_low_order_and_a_higher_second_parameter(b):
+    expected = reference(0.3, b, -1.0).real
+    assert mittag_leffler(0.3, b, -1.0) == pytest.approx(expected, rel=2e-13)
+
+
+@pytest.mark.parametrize("b", [-9.5, -7.5, -4.0, -2.0, 3.5, 5.0, 7.0, 10.0])
+def test_second_parameters_of_any_size(b):
+    """The integrand has a pole of order b - a at zero, or grows as s**(a - b) far out."""
+    rng = np.random.default_rng(int(10 * b + 100))
+    for a in (0.3, 0.5, 0.9, 1.4, 1.9):
+        for angle in (0.0, math.pi, rng.uniform(-math.pi, math.pi)):
+            z = rng.uniform(0.95, min(6.0, 20.0**a)) * np.exp(1j * angle)
+            expected = reference(a, b, z)
+            error = abs(complex(mittag_leffler(a, b, z)) - expected)
+            assert error < 2e-13 * max(abs(expected), 1.0 / (1.0 + abs(z)))
+
+
+def test_values_that_do_not_overflow_though_their_exponential_does():
+    z = math.sqrt(750.0)
+    leading = 2.0 * math.exp(375.0) * math.exp(375.0 - 9.0 * math.log(750.0))
+    assert mittag_leffler(0.5, 10.0, z) == pytest.approx(leading, rel=1e-12)

@@ -6,7 +6,9 @@ import pytest
 import sympy as sp
 
 from racs_bif.errors import ModelError, ParameterError, UsageError
+from racs_bif.fractional.compare import is_passive
 from racs_bif.fractional.creep import creep, relaxation
+from racs_bif.fractional.filter import Filter
 from racs_bif.fractional.law_numbers import law_in_numbers
 from racs_bif.fractional.laws import Law, PowerSum
 from racs_bif.fractional.moduli import moduli
@@ -196,3 +198,26 @@ def test_a_constant_in_disguise_is_passive():
     side = np.array([0.0, 0.4])
     law = Law(PowerSum(np.array([3.0, 3.0]), side), PowerSum(np.ones(2), side))
     assert passivity(law).active == passivity(law).negative_stiffness == ()
+
+
+def test_relaxation_of_orders_up_to_two():
+    s, t = sp.Symbol("s"), np.array([0.3, 1.0, 4.0])
+    assert relaxation(law_in_numbers(1 / (1 + s**2)), t) == pytest.approx(1.0 - np.cos(t))
+    with pytest.raises(UsageError, match="the order 3 is over 2"):
+        relaxation(law_in_numbers(1 / (1 + s**3)), t)
+
+
+@pytest.mark.parametrize(
+    ("gains", "passive"),
+    [
+        ([1.0, -7.0], False),  # Im Z < 0 below 0.66 rad/s, less than the slowest rate
+        ([-1.8, 0.9, -1.4], False),  # about 10 rad/s only
+        ([-0.5, 0.3, -2.8], True),
+    ],
+)
+def test_filters_are_passive_by_their_response_at_all_frequencies(gains, passive):
+    rates = np.array([1.0, 10.0, 100.0])[: len(gains)]
+    omega = np.geomspace(1e-4, 1e6, 500)[:, None]
+    loss = (-np.array(gains) * rates / (omega**2 + rates**2)).sum(axis=1)  # Im Z / omega
+    assert np.all(loss > 0.0) == passive
+    assert is_passive(Filter(np.diag(-rates), rates, np.array(gains), 0.0)) == passive

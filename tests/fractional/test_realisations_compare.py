@@ -3,11 +3,13 @@
 import math
 import sys
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from racs_bif.errors import ConvergenceError, UsageError
+from racs_bif.fractional import compare as module
 from racs_bif.fractional.charef import Charef
 from racs_bif.fractional.compare import compare, is_passive
 from racs_bif.fractional.diffusive import Diffusive
@@ -256,3 +258,35 @@ def test_poles_are_real_by_their_size(system_of, f):
             system, [Given(band=(0.1, 10.0), filter=Filter(A, np.ones(2), np.ones(2), 1.0))]
         )
         assert row.real_poles == real
+
+
+def test_the_static_gain_is_that_of_the_first_element(system_of):
+    system = system_of(
+        {"x": "-x - w - v"},
+        elements=[("w", "x", "k/(1+s**q)"), ("v", "x", "1/s**q")],
+        parameters={"k": 3.0, "q": 0.6},
+    )
+    (row,) = compare(system, [Diffusive(band=(0.1, 10.0), order=6)])
+    assert row.static_gain == pytest.approx(3.0)
+
+
+def test_a_pole_that_grows_is_not_called_negative(system_of):
+    system = system_of({"x": "-x - w"}, elements=[("w", "x", "1/(1+s**q)")], parameters={"q": 0.6})
+    growing = Filter(np.diag([-1.0, 0.5]), np.ones(2), np.ones(2), 1.0)
+    (row,) = compare(system, [Given(band=(0.1, 10.0), filter=growing)])
+    assert row.largest_pole == 0.5
+    assert not row.real_poles
+
+
+def test_a_refused_realisation_has_no_states(rows):
+    assert rows["nonnegative"].states == 0
+
+
+def test_an_error_at_a_hopf_point_at_zero_is_absolute(racs, monkeypatch):
+    found = SimpleNamespace(value=0.25, omega=9.0)
+    monkeypatch.setattr(module, "solve_realised_hopf", lambda *_: found)
+    monkeypatch.setattr(
+        module, "solve_hopf", lambda *_: SimpleNamespace(X=None, value=0.0, omega=9.0)
+    )
+    (row,) = compare(racs, [Diffusive(band=BAND)], hopf=HOPF)
+    assert row.hopf_error == 0.25

@@ -7,6 +7,7 @@ from racs_bif.errors import ParameterError, UsageError
 from racs_bif.fractional.aaa import Aaa
 from racs_bif.fractional.charef import Charef
 from racs_bif.fractional.continued_fraction import ContinuedFraction
+from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.fractional.fitted import Fitted
 from racs_bif.fractional.laws import Law, PowerSum
 from racs_bif.fractional.matsuda import Matsuda
@@ -284,6 +285,10 @@ def test_four_and_a_half_rates_a_decade_unless_told():
     assert Aaa(band=(0.1, 1e4)).order == 15
 
 
+def test_two_sections_a_decade_unless_told():
+    assert ModifiedOustaloup(band=(1.0, 1e4)).sections == 8
+
+
 def test_matsuda_goes_through_its_points_to_rounding():
     """Poles as eigenvalues are not sharp enough: they are polished."""
     settings = Matsuda(band=(1e-2, 1e3), sections=9)
@@ -352,3 +357,43 @@ def test_nonnegative_names_where_the_spectrum_is_wrong():
         NonNegative(band=NARROW).realise(LAWS["vehicle"])
     x = float(str(caught.value).split(" .. ")[1].split()[0])
     assert x**0.4 + np.sin(0.4 * np.pi) / np.sin(0.7 * np.pi) * x**0.7 == pytest.approx(1, rel=0.03)
+
+
+@pytest.mark.parametrize("kind", [Matsuda, ContinuedFraction])
+def test_three_sections_a_decade_unless_told(kind):
+    assert kind(band=(1.0, 100.0)).sections == 6
+    assert kind(band=(1.0, 2.0)).sections == 3
+
+
+@pytest.mark.parametrize("kind", [Diffusive, Fitted])
+def test_rates_reach_six_times_beyond_the_band_unless_told(kind):
+    assert kind(band=NARROW).rates[[0, -1]] == pytest.approx([1.0 / 6.0, 360.0])
+    assert kind(band=NARROW, spread=0.5).rates[[0, -1]] == pytest.approx([2.0, 30.0])
+
+
+def test_derivative_of_a_law_with_a_whole_power():
+    one = law([(1.0, 0.0), (0.5, 1.0)], [(1.0, 0.0), (1.0, 0.5), (0.1, 1.0)], "whole")
+    settings, direction, h = Fitted(band=NARROW, omega=9.0), some_direction(one), 1e-5
+    exact = settings.derivative(one, direction)
+    ahead, behind = (settings.realise(moved(one, direction, k)) for k in (h, -h))
+    difference = (ahead.C - behind.C) / (2.0 * h)
+    np.testing.assert_allclose(exact.C, difference, rtol=0, atol=1e-5 * np.abs(difference).max())
+
+
+def test_unstable_zeros_are_mirrored_whatever_their_size():
+    assert _made_real(np.array([0.5, -0.1])) == pytest.approx([0.1, 0.5])
+    pair = np.array([0.5 + 0.3j, 0.5 - 0.3j])
+    assert _made_real(pair) == pytest.approx(0.34**0.5 * np.array([1.0, 1.05]))
+
+
+def test_two_rates_are_the_fewest():
+    assert NonNegative(band=NARROW, order=2).rates == pytest.approx([1.0 / 6.0, 360.0])
+    with pytest.raises(UsageError, match="order 1 is too small; use at least 2"):
+        NonNegative(band=NARROW, order=1)
+
+
+def test_nonnegative_looks_at_the_spectrum_beyond_the_band():
+    """The vehicle's law of 1/s: its spectrum is wrong at high rates."""
+    turned = law([(1.0, 0.0), (1.0, 0.7)], [(1.0, 0.4), (1.0, 0.7)], "turned")
+    with pytest.raises(ParameterError, match=r"\.\. 6e\+07 rad/s"):
+        NonNegative(band=NARROW).realise(turned)

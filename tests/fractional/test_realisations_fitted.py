@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from racs_bif.equilibria.hopf_form import hopf_form
 from racs_bif.errors import ConvergenceError, UsageError
+from racs_bif.fractional import fitted as fitted_module
 from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.fractional.exact_hopf import solve_hopf
 from racs_bif.fractional.fitted import Fitted, fit_to_hopf
@@ -204,3 +205,21 @@ def test_settings():
         Fitted(band=BAND, omega=0.5)
     with pytest.raises(UsageError, match="spread"):
         Fitted(band=BAND, spread=0.0)
+
+
+@pytest.mark.parametrize(("parameter", "omega"), [("C_s", 9.52), ("alpha", 9.5)])
+def test_agreement_is_relative_to_the_parameter(racs, monkeypatch, parameter, omega):
+    """Some 3e4 N/rad and some 0.3."""
+    system = racs.with_parameters({"u": 10.2})
+    shift = 2e-12
+
+    def off(*given):
+        found = solve_realised_hopf(*given)
+        return replace(found, value=found.value * (1.0 + shift))
+
+    monkeypatch.setattr(fitted_module, "solve_realised_hopf", off)
+    near = system.parameters[parameter], omega
+    assert isinstance(fit_to_hopf(system, parameter, *near).settings, Fitted)
+    shift = 2e-11
+    with pytest.raises(ConvergenceError, match=rf"off by 2\.0e-11 in {parameter};"):
+        fit_to_hopf(system, parameter, *near)

@@ -1,14 +1,18 @@
 """The realised vector field of the vehicle: every derivative against differences."""
 
 import pickle
+from copy import copy
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from racs_bif.fractional.diffusive import Diffusive
 from racs_bif.fractional.oustaloup import Oustaloup
+from racs_bif.fractional.realised import RealisedField
 from racs_bif.fractional.system import System
 from racs_bif.symbolic.field import VectorField
+from racs_bif.symbolic.model import Calibration
 
 
 @pytest.fixture(params=["diffusive", "oustaloup"], scope="module")
@@ -242,6 +246,8 @@ def test_a_model_without_elements(system_of, differences):
     assert field.states == ("x", "y")
     assert system.realisation.states == 0
     assert system.realisation.name == "none"
+    assert system.realisation.error == 0.0
+    assert len({system, system.with_parameters({})}) == 2
     np.testing.assert_allclose(field.f(x, p), [-0.4, 1.5 * 0.51 * -0.4 - 0.7], rtol=1e-15)
     exact = [[0.0, 1.0], [-2.0 * 1.5 * 0.7 * -0.4 - 1.0, 1.5 * 0.51]]
     np.testing.assert_allclose(field.f_x(x, p), exact, rtol=1e-14)
@@ -251,6 +257,15 @@ def test_a_model_without_elements(system_of, differences):
     np.testing.assert_allclose(field.f_xxx(x, p, e1, e2, e1), [0.0, -3.0], rtol=1e-15)
     np.testing.assert_allclose(field.f_xp(x, p, e2, np.ones(1)), [0.0, 0.51], rtol=1e-15)
     np.testing.assert_allclose(system.equilibrium(), 0.0, atol=1e-12)
+
+
+def test_names_of_states_where_a_parameter_of_a_law_is_calibrated(system_of):
+    system = system_of({"x": "-x-w"}, elements=[("w", "x", "c*s**0.5")], parameters={"c": 2.0})
+    (given,), names = system.compiled.parameters, system.field.states
+    computed = replace(given, default=Calibration("c", {"c": 1.0}, (0.0, 2.0)))
+    compiled = copy(system.compiled)
+    compiled.parameters = (computed,)
+    assert RealisedField(compiled, system.settings).states == names
 
 
 def test_two_elements_and_an_integrator(system_of, differences):

@@ -189,6 +189,28 @@ def test_derivative_of_the_determinant():
     assert np.linalg.det(ch.matrix(t)) == pytest.approx(direct, rel=1e-12)
 
 
+def test_the_determinant_where_a_row_is_exactly_zero():
+    ch = ordinary(np.diag([1.0, 4.0]))
+    log_det, rate = ch.log_det(np.log([1.0, 3.0]))
+    assert log_det[0].real == -math.inf
+    assert rate[0] == math.inf
+    assert np.exp(log_det[1]) == pytest.approx(-2.0)
+    assert rate[1] == pytest.approx(3.0 * (1.0 / 2.0 - 1.0))
+    assert [len(part) for part in ch.log_det(np.zeros(0))] == [0, 0]
+
+
+def test_the_determinant_where_a_coefficient_is_large():
+    t = np.array([5.0 + 1.0j])
+    found = scalar([1.0, 1e4], [0.0, 0.5]).log_det(t)[0]
+    assert np.exp(found) == pytest.approx(1.0 + 1e4 * np.exp(0.5 * t))
+
+
+def test_a_matrix_that_is_not_square_is_refused():
+    one = [powers([1.0], [1.0])] * 2
+    with pytest.raises(ParameterError, match=r"2 rows of powers do not fit a matrix \(2, 3\)"):
+        Characteristic(one, one, np.ones((2, 3)))
+
+
 def test_at_the_hopf_point_the_pair_is_on_the_axis():
     found = characteristic_roots(load_model("racs", parameters={"u": 10.2}))
     assert found.on_axis == pytest.approx([9.5200832], rel=1e-8)
