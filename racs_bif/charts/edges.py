@@ -286,10 +286,10 @@ def cross(edges: Sequence[Edge], boundaries: list[Boundary]) -> None:
 
 def _crossed(edges: Sequence[Edge], boundary: Boundary, number: int) -> None:
     start, end = (np.array([getattr(edge, at) for edge in edges]).T for at in ("start", "end"))
-    if boundary.kind in ENDS:
-        # a node may be on the boundary, or as near as the line between its points is to it
-        start, end = start - _ALMOST * (end - start), end + _ALMOST * (end - start)
-    which, shares, places = intersections(start, end, boundary)
+    # a node may be on where the equilibrium ends, or as near as the line between its points is
+    beside, way = _ALMOST if boundary.kind in ENDS else 0.0, end - start
+    which, shares, places = intersections(start - beside * way, end + beside * way, boundary)
+    shares = (1.0 + 2.0 * beside) * shares - beside
     found = list(zip(which.tolist(), shares.tolist(), places.tolist(), strict=True))
     if boundary.kind in ENDS or not found:
         for e, share, _ in found:

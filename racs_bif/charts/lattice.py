@@ -132,10 +132,15 @@ class Lattice:
         return key in self.nodes and self.nodes[key].found
 
     @property
+    def found(self) -> list[Node]:
+        """The nodes at which there is an equilibrium."""
+        return [node for node in self.nodes.values() if node.found]
+
+    @property
     def scale(self) -> Array:
         """Largest magnitudes (size,) of the states at the nodes."""
         if self._scale is None:
-            X = np.array([node.X for node in self.nodes.values() if node.found])
+            X = np.array([node.X for node in self.found])
             scale = np.abs(X).max(axis=0)
             self._scale = np.maximum(scale, 1e-9 * max(float(scale.max()), 1e-3))
         return self._scale
@@ -207,28 +212,31 @@ class Lattice:
 
     def _why_not(self, keys: list[Key]) -> list[int]:
         """Return why there is no equilibrium at nodes: `BEYOND` or `NOTHING`."""
-        nodes = [node for node in self.nodes.values() if node.found]
-        if not keys or not nodes:
+        if not keys or not self.found:
             return [NOTHING] * len(keys)
-        at, known = np.array([self.place(key) for key in keys]), np.array([n.place for n in nodes])
-        nearest = np.hypot(*(at[:, None] - known).T).argmin(axis=0)
-        begun, P = np.array([nodes[k].X for k in nearest]).T, self.plane.vectors(at.T)
+        at = np.array([self.place(key) for key in keys])
+        begun, known = self._nearest(at)
+        P = self.plane.vectors(at.T)
         X, found, _ = self.sheet.newton(begun, P)
         X = np.where(found, X, begun)
-        same = self.sheet.side(X, P) == self.sheet.side(begun, self.plane.vectors(known[nearest].T))
+        same = self.sheet.side(X, P) == self.sheet.side(begun, self.plane.vectors(known))
         return [NOTHING if here else BEYOND for here in same]
+
+    def _nearest(self, at: Array) -> tuple[Array, Array]:
+        """Return equilibria (size, N) and places (2, N) of the nodes nearest to places (N, 2)."""
+        nodes = self.found
+        places = np.array([node.place for node in nodes])
+        nearest = np.hypot(*(at[:, None] - places).T).argmin(axis=0)
+        return np.array([nodes[k].X for k in nearest]).T, places[nearest].T
 
     def along(self, line: Array) -> list[Node]:
         """Return nodes just before the places (N, 2) of a fold, on the side of the equilibrium.
 
         They are kept in `beside`; places that no node nearby leads to are left out.
         """
-        nodes = [node for node in self.nodes.values() if node.found]
-        at = np.array([node.place for node in nodes])
-        nearest = np.hypot(*(line[:, None] - at).T).argmin(axis=0)
-        start = at[nearest].T
+        X, start = self._nearest(line)
         end = start + _SHORT_OF * (line.T - start)
-        X, reached = self.sheet.follow(np.array([nodes[k].X for k in nearest]).T, start, end)
+        X, reached = self.sheet.follow(X, start, end)
         good = np.flatnonzero(reached == 1.0)
         if not len(good):
             return []

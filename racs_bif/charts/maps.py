@@ -89,7 +89,7 @@ class MapJob:
                 "draw the chart without one"
             )
             raise UsageError(msg)
-        nodes = [node for node in lattice.nodes.values() if node.found]
+        nodes = lattice.found
         places = np.array([node.place for node in nodes]).T
         return cls(lattice.plane, shape, quantity, places, np.array([n.X for n in nodes]).T, sweep)
 

@@ -66,7 +66,7 @@ def _piece(boundary: Boundary, first: int, stop: int) -> Boundary:
 
 def _belongs(lattice: Lattice, boundary: Boundary) -> NDArray[np.bool_]:
     """Return which points are reached from the nearest nodes, by continuing their equilibria."""
-    nodes = [node for node in lattice.nodes.values() if node.found]
+    nodes = lattice.found
     places = np.array([node.place for node in nodes])
     at = lattice.plane.places(boundary.values.T)
     order = np.argsort(np.hypot(*(at[:, :, None] - places.T[:, None, :])), axis=1, kind="stable")

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from racs_bif.equilibria.branch_point_curve import BranchPointCurve
-from racs_bif.equilibria.curve_problem import CurveProblem, Matrix, Span
+from racs_bif.equilibria.curve_problem import CurveProblem, Matrix
 from racs_bif.equilibria.exact_fold_curve import ExactFoldCurve
 from racs_bif.equilibria.exact_hopf_curve import ExactHopfCurve
+from racs_bif.equilibria.singular_mass_curve import SingularMassCurve
 
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Array, Spectrum
-    from racs_bif.fractional.realised import RealisedField
-    from racs_bif.fractional.static import StaticField
-    from racs_bif.symbolic.paths import ParameterPath
 
 _NO_SPECTRUM = np.empty(0, dtype=complex)
 DERIVATIVES = 4
@@ -103,60 +101,10 @@ class StaticBoundary(_Boundary, BranchPointCurve):
     name = "static boundary"
 
 
-class SingularBoundary(_Boundary):
-    """Where the mass matrix is singular: z = (y, w, lambda_1, lambda_2), f = 0 and det M = 0.
+class SingularBoundary(_Boundary, SingularMassCurve):
+    """Where the mass matrix is singular."""
 
-    Parameters
-    ----------
-    static : StaticField
-        The equilibrium equations.
-    realised : RealisedField
-        The realisation, which is not asked.
-    path, span
-        See `CurveProblem`.
-    """
-
-    kind = "singular"
-    critical = 0
     name = "singular mass matrix"
-
-    def __init__(
-        self, static: StaticField, realised: RealisedField, path: ParameterPath, span: Span
-    ) -> None:
-        super().__init__(static, path, span, len(realised.compiled.states))
-        self._compiled = static.compiled
-        self._ny = len(self._compiled.states)
-
-    def residual(self, z: Array) -> Array:
-        """Return (f, det M) (n+1,), the forces before they are divided by M."""
-        self.evaluations += 1
-        X, p = self.base(z)
-        forces = self._compiled.forces(X, self._compiled.padded(p))
-        with np.errstate(all="ignore"):
-            rest = self.field.f(X, p)[self._ny :]
-        return np.concatenate([forces[:-1], rest, forces[-1:]])
-
-    def jacobian(self, z: Array) -> Array:
-        """Return the derivatives (n+1, n+2)."""
-        self.evaluations += DERIVATIVES
-        X, p = self.base(z)
-        n, ny, padded = self.n, self._ny, self._compiled.padded
-        along, moved = np.zeros((n, n + 2)), np.zeros((len(p), n + 2))
-        along[:, :n] = np.eye(n)
-        moved[:, n:] = np.column_stack(self.directions(z))
-        slopes = self._compiled.forces_d(X, padded(p), along, padded(moved))
-        jacobian = np.empty((n + 1, n + 2))
-        jacobian[:ny], jacobian[n] = slopes[:-1], slopes[-1]
-        with np.errstate(all="ignore"):
-            jacobian[ny:n, :n] = self.field.f_x(X, p)[ny:]
-            for k, dp in enumerate(self.directions(z)):
-                jacobian[ny:n, n + k] = self.field.f_p(X, p, dp)[ny:]
-        return jacobian
-
-    def frequency(self, z: Array) -> float:
-        """Return infinity: where a root passes."""
-        del z
-        return float("inf")
 
 
 def _unit(vector: Matrix) -> Matrix:

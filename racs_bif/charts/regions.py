@@ -70,7 +70,7 @@ def regions(lattice: Lattice, boundaries: list[Boundary]) -> tuple[Region, ...]:
             continue
         inside = np.flatnonzero(face.contains(places))
         place = _middle(face)
-        room = _room(face, places[inside]) if len(inside) else np.zeros(0)
+        room = _room(face, places[inside])
         count = (
             int(counts[inside[int(np.argmax(room))]]) if len(inside) else _counted(lattice, place)
         )
@@ -113,8 +113,7 @@ def _room(face: Face, places: Array) -> Array:
 
 def _counted(lattice: Lattice, place: Array) -> int:
     """Return the count at a place, continued from the nearest node that leads there."""
-    nodes = [node for node in lattice.nodes.values() if node.found]
-    nodes.sort(key=lambda node: float(np.hypot(*(node.place - place))))
+    nodes = sorted(lattice.found, key=lambda node: float(np.hypot(*(node.place - place))))
     for node in nodes[:4]:
         at = place[:, None]
         X, reached = lattice.sheet.follow(node.X[:, None], node.place[:, None], at)

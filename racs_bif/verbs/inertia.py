@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from racs_bif.charts.members import Members
+
 if TYPE_CHECKING:
     from racs_bif.continuation.points import Trace
     from racs_bif.equilibria.problem import EquilibriumProblem
@@ -19,17 +21,14 @@ def inertia_lost(system: System, problem: EquilibriumProblem, found: Trace) -> s
     The equilibria pass through, but an eigenvalue passes through infinity: the number of unstable
     ones changes with no special point.
     """
-    compiled = system.compiled
-    if not compiled.has_inertia or not found.points:
+    if not system.compiled.has_inertia or not found.points:
         return ""
-    core = []
-    for point in found.points:
-        p = problem.path.vector(point.z[-1])
-        core.append((system.field.core_point(point.z[:-1], p), system.field.frame(p).P))
-    with np.errstate(all="ignore"):
-        side = np.sign(
-            compiled.inertia(*(np.array(column).T for column in zip(*core, strict=True)))
-        )
+    members = Members(system)
+    X = np.zeros((members.size, len(found.points)))  # of states only may a mass matrix depend
+    for k, point in enumerate(found.points):
+        X[: members.ny, k] = point.z[: members.ny]
+    P = np.array([problem.path.vector(point.parameter) for point in found.points]).T
+    side = members.side(X, P)
     told = [
         f"{a.parameter:.10g} and {b.parameter:.10g}"
         for (a, b), change in zip(pairwise(found.points), np.diff(side), strict=True)
